@@ -1,4 +1,4 @@
-//! Work lists of a frame for a crowd: the bones and instances that a gate chose.
+//! Work lists of one frame of a crowd: the bones and instances that the gate chose to update.
 
 #[cfg(feature = "gpu")]
 mod buffers;

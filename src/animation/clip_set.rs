@@ -1,5 +1,5 @@
-//! A set of clips of one skeleton, as crowds play them. It holds the arrays of all clips one after another, and the timelines
-//! that tracks share. The first timeline of a clip has the times of all its tracks.
+//! A set of clips of one skeleton, in the layout that crowds play from. The arrays of all clips lie one after another. Tracks
+//! share timelines (lists of key times). The first timeline of a clip contains the times of all its tracks.
 
 use std::collections::HashMap;
 
@@ -9,21 +9,21 @@ use crate::asset::clip::{Clip, Interpolation, Track};
 use crate::shared::animation::clip as packed;
 pub use crate::shared::animation::clip::{ClipEntry, Timeline};
 
-/// A track in a clip set.
+/// An animation track in a clip set: the values of one bone's translation, rotation or scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SetTrack {
-    /// Index of the timeline with the track's key times, counted from the clip's first timeline; `None` if the value never
-    /// changes.
+    /// Index of the track's timeline, relative to the clip's first timeline; `None` if the value never changes.
     pub timeline: Option<u32>,
-    /// Interpolation of values between keys.
+    /// Interpolation of the values between keys.
     pub interpolation: Interpolation,
-    /// Index of the track's first value; for a constant spline, of the middle one of its three values.
+    /// Index of the track's first value in [`ClipSet::values`]. A constant spline has three values; for it, this is the index of
+    /// the middle one.
     pub first_value: u32,
 }
 
 #[cfg(feature = "gpu")]
 impl SetTrack {
-    /// The packed track that kernels read, 8 bytes.
+    /// The track in the packed 8-byte form that kernels read.
     pub fn packed(&self) -> packed::SetTrack {
         let timeline = self.timeline.unwrap_or(packed::CONSTANT);
         let interpolation = self.interpolation as u32;
@@ -31,7 +31,7 @@ impl SetTrack {
     }
 }
 
-/// Clips of one skeleton.
+/// A set of clips of one skeleton, with shared timelines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClipSet {
     bones: usize,
@@ -43,11 +43,11 @@ pub struct ClipSet {
 }
 
 impl ClipSet {
-    /// Builds a set from clips of one skeleton.
+    /// Builds a set from clips of the same skeleton.
     ///
     /// # Errors
-    /// [`InputError`] for an empty list, for clips of different numbers of bones, and for more values or times than `u32` byte
-    /// offsets can address.
+    /// [`InputError`] for an empty list, for clips with different numbers of bones, and for 2²⁸ values or times or more: kernels
+    /// address them by `u32` byte offsets.
     pub fn new(clips: &[&Clip]) -> Result<Self, InputError> {
         let Some(first) = clips.first() else {
             return Err(InputError::new("clips.len", 0, "must be at least 1"));
@@ -104,8 +104,8 @@ impl ClipSet {
         });
     }
 
-    /// Adds a clip's first timeline: every time of any of its tracks, once. Gate tables use only this timeline. In most clips
-    /// one of the tracks already has exactly these times.
+    /// Adds a clip's first timeline: the sorted key times of all its tracks, without duplicates. Gate tables use only this
+    /// timeline. In most clips, one of the tracks already has exactly these times.
     fn add_common_timeline(&mut self, clip: &Clip, first_time: usize) -> Timeline {
         let common = all_times(clip);
         let same = moving(clip).find(|track| clip.times_of(track) == common);
@@ -123,19 +123,19 @@ impl ClipSet {
         timeline
     }
 
-    /// Times of a clip's rows in gate tables.
+    /// Times of a clip's rows in gate tables, in seconds: the key times of all its tracks.
     pub fn common_times(&self, clip: &ClipEntry) -> &[f32] {
         let timeline = self.timelines[clip.first_timeline as usize];
         &self.times[timeline.first_time as usize..][..timeline.keys as usize]
     }
 
-    /// Number of a clip's rows in gate tables: one per [`ClipSet::common_times`], and one for the whole clip.
+    /// Number of rows of a clip in gate tables: one per time in [`ClipSet::common_times`], and one for the whole clip.
     pub fn rows(&self, clip: &ClipEntry) -> u32 {
         self.timelines[clip.first_timeline as usize].keys + 1
     }
 
-    /// Refuses a list of clips that differs from the one the set was made from, also in its order. Data computed from them
-    /// would be assigned to the wrong clips.
+    /// Returns an error unless `clips` are the clips that the set was made from, in the same order. Otherwise data computed from
+    /// them would be assigned to the wrong clips.
     pub(crate) fn check_clips(&self, clips: &[&Clip]) -> Result<(), InputError> {
         InputError::check_same("clips.len", clips.len(), self.clips.len(), "those of the set")?;
         let mut values = self.values.as_slice();
@@ -161,22 +161,22 @@ impl ClipSet {
         self.bones
     }
 
-    /// The clips.
+    /// The clips' entries, in the order in which they were given to [`ClipSet::new`].
     pub fn clips(&self) -> &[ClipEntry] {
         &self.clips
     }
 
-    /// Three tracks per bone and clip: translation, rotation, scale.
+    /// All tracks: for each clip and bone, a translation, a rotation and a scale track.
     pub fn tracks(&self) -> &[SetTrack] {
         &self.tracks
     }
 
-    /// The timelines, clip by clip.
+    /// The timelines of all clips, one clip after another.
     pub fn timelines(&self) -> &[Timeline] {
         &self.timelines
     }
 
-    /// Number of cursors per instance: the largest number of timelines of any clip, at least 1.
+    /// Number of cursors per instance: the largest number of timelines in any clip, at least 1.
     pub fn timelines_a_clip(&self) -> usize {
         self.clips.iter().map(|clip| clip.timelines as usize).max().unwrap_or(0).max(1)
     }
@@ -186,7 +186,7 @@ impl ClipSet {
         &self.times
     }
 
-    /// Values of all clips.
+    /// Key values of all clips.
     pub fn values(&self) -> &[[f32; 4]] {
         &self.values
     }
@@ -196,7 +196,7 @@ fn moving(clip: &Clip) -> impl Iterator<Item = &Track> {
     clip.tracks().iter().filter(|track| track.keys > 1)
 }
 
-/// All times of a clip's tracks, each once, and the clip's start.
+/// The clip's start and all key times of its tracks: sorted, without duplicates.
 fn all_times(clip: &Clip) -> Vec<f32> {
     let mut common: Vec<f32> = moving(clip).flat_map(|track| clip.times_of(track)).copied().collect();
     common.sort_by(f32::total_cmp);

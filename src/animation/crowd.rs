@@ -1,4 +1,4 @@
-//! A crowd's data on the device: the clips that it plays and, per instance, cursors, local transforms and model matrices.
+//! Data of a crowd on the device: the clips that it plays, and the cursors, local transforms and model matrices of its instances.
 
 use crate::animation::clip_set::{ClipEntry, ClipSet, SetTrack, Timeline};
 use crate::animation::instance::Instance;
@@ -12,7 +12,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::shared::animation::clip::SetTrack as PackedTrack;
 use crate::{Error, InputError};
 
-/// A local transform in the kernels' layout: translation and scale x; rotation; scale y, scale z and two unused words.
+/// Local transform in the kernels' layout: translation x, y, z and scale x; the rotation; scale y, scale z and two unused words.
 pub type Local = [[f32; 4]; 3];
 
 /// Converts a transform to the kernels' layout.
@@ -27,30 +27,30 @@ pub fn unpacked(local: &Local) -> Transform {
     Transform { translation: [x, y, z], rotation, scale: [sx, sy, sz] }
 }
 
-/// A set of clips on the device.
+/// A clip set on the device.
 #[derive(Debug, Clone)]
 pub struct ClipBuffers {
-    /// One entry per clip.
+    /// One entry per clip: its timelines, duration and first row in gate tables.
     pub clips: Buffer<ClipEntry>,
-    /// Three tracks per bone and clip.
+    /// Three tracks per bone and clip: translation, rotation, scale.
     pub tracks: Buffer<PackedTrack>,
-    /// Timelines, clip by clip.
+    /// Timelines of all clips, one clip after another.
     pub timelines: Buffer<Timeline>,
-    /// Key times in seconds.
+    /// Key times of all timelines, in seconds.
     pub times: Buffer<f32>,
-    /// Values of all tracks.
+    /// Key values of all tracks.
     pub values: Buffer<[f32; 4]>,
-    /// Number of cursors per instance.
+    /// Number of keyframe cursors per instance: the largest number of timelines in any clip.
     pub timelines_a_clip: usize,
     /// Whether any track is a cubic spline.
     pub has_splines: bool,
 }
 
 impl ClipBuffers {
-    /// Uploads a set.
+    /// Uploads a clip set to the device.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, set: &ClipSet) -> Result<Self, GpuError> {
         let tracks: Vec<PackedTrack> = set.tracks().iter().map(SetTrack::packed).collect();
         Ok(Self {
@@ -65,46 +65,50 @@ impl ClipBuffers {
     }
 }
 
-/// Instances of one skeleton on the device. The caller may read and bind all buffers.
+/// Animated instances of one skeleton on the device. The caller may read and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct Crowd {
-    /// Clip that each instance plays, per layer, at `layer · len + instance`. The caller may rewrite it; `write_at` from
-    /// `layer · len` on replaces one layer. Clips must exist in the set.
+    /// The clip that each instance plays, per layer, at index `layer · len + instance`. The caller may rewrite it: `write_at`
+    /// from `layer · len` on replaces one layer. Every clip index must exist in the set.
     pub instances: Buffer<Instance>,
-    /// Cursors that [`crate::animation::keyframe_cursor::KeyframeCursorPass`] writes: [`ClipSet::timelines_a_clip`] for each
-    /// entry of `instances`.
+    /// Keyframe cursors, written by [`crate::animation::keyframe_cursor::KeyframeCursorPass`]: [`ClipSet::timelines_a_clip`]
+    /// cursors per entry of `instances`.
     pub cursors: Buffer<KeyframeCursor>,
-    /// Weights of the layers above the base, 0..=1. First, for each layer, one weight per instance at
-    /// `(layer − 1) · len + instance`; then, for each layer, a mask with one value per bone. Weights may be rewritten
+    /// Weights of the layers above the base, 0..=1. The first part holds one weight per instance and layer, at `(layer − 1) · len
+    /// + instance`. The second part holds a mask per layer, with one value per bone. The caller may rewrite the weights
     /// ([`Crowd::set_weights`]).
     pub layer_weights: Buffer<f32>,
-    /// Local transforms that [`crate::animation::sample::SamplePass`] writes, at `instance · bones + bone`.
+    /// Local transforms, written by [`crate::animation::sample::SamplePass`], at index `instance · bones + bone`.
     pub locals: Buffer<Local>,
-    /// Model matrices that [`crate::animation::local_to_model::LocalToModelPass`] writes.
+    /// Model matrices, written by [`crate::animation::local_to_model::LocalToModelPass`].
     pub model_matrices: ModelMatrices,
     /// Number of bones of the skeleton.
     pub bones: usize,
     /// Number of layers, including the base: 1 if each instance plays one clip.
     pub layers: usize,
-    /// Number of clips of the set.
+    /// Number of clips in the crowd's clip set.
     pub(crate) clips: usize,
     path: RotationPath,
 }
 
 impl Crowd {
-    /// Allocates a crowd with one layer, for instances of a set's clips.
+    /// Allocates a crowd with one layer: each instance plays one clip of the set.
     ///
     /// # Errors
-    /// [`InputError`] for no instances, and for instances of a clip that the set does not have; [`GpuError`].
+    /// [`InputError`] if `instances` is empty or an instance's clip is not in the set; [`GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, set: &ClipSet, instances: &[Instance]) -> Result<Self, Error> {
         Self::layered(gpu, set, instances, &[])
     }
 
-    /// Allocates a crowd with layers above the base, for instances of a set's clips.
+    /// Allocates a crowd with layers above the base. `base` and the layers play clips of the set.
     ///
     /// # Errors
-    /// [`InputError`] for no instances, for instances of a clip that the set does not have, for more than [`MAX_LAYERS`]
-    /// layers, and for layers that do not match ([`AnimationLayer::validate`]); [`GpuError`].
+    /// [`InputError`] in these cases; [`GpuError`] for errors of the device:
+    ///
+    /// - `base` is empty;
+    /// - an instance's clip is not in the set;
+    /// - there are more than [`MAX_LAYERS`] layers, including the base;
+    /// - a layer does not match the crowd ([`AnimationLayer::validate`]).
     pub fn layered(
         gpu: &Gpu,
         set: &ClipSet,
@@ -113,7 +117,7 @@ impl Crowd {
     ) -> Result<Self, Error> {
         let (count, bones) = (base.len(), set.bones());
         let pairs = count.saturating_mul(bones);
-        // Shaders count vectors in u32.
+        // Shaders index the three vectors of each local transform in u32.
         if base.is_empty() || pairs.saturating_mul(3) > 1 << 31 {
             let bound = format!("must be at least 1 and at most {}", (1_u64 << 31) / 3 / bones as u64);
             return Err(InputError::new("instances.len", count, bound).into());
@@ -137,28 +141,29 @@ impl Crowd {
         })
     }
 
-    /// Returns the crowd with another rotation path between keys. The gate tables and the sampling pass must use the same path.
+    /// Sets the rotation path between keys and returns the crowd. The gate tables and the sampling pass must use the same path.
     #[must_use]
     pub fn with_path(self, path: RotationPath) -> Self {
         Self { path, ..self }
     }
 
-    /// Rotation path between keys: slerp unless [`Crowd::with_path`] chose another.
+    /// Rotation path between keys: slerp by default; [`Crowd::with_path`] changes it.
     pub fn path(&self) -> RotationPath {
         self.path
     }
 
-    /// Model matrices of all bones, at `instance · bones + bone`, written by
-    /// [`crate::animation::local_to_model::LocalToModelPass`].
+    /// Model matrices of all bones, at index `instance · bones + bone`. [`crate::animation::local_to_model::LocalToModelPass`]
+    /// writes them.
     pub fn model_matrices(&self) -> &ModelMatrices {
         &self.model_matrices
     }
 
-    /// Replaces the weights of a layer, one per instance; layers above the base are numbered from 1.
+    /// Replaces the weights of a layer above the base with `weights`, one per instance. Layer 1 is the first layer above the
+    /// base.
     ///
     /// # Errors
-    /// [`InputError`] for the base or a layer that the crowd does not have, for a number of weights that is not
-    /// one per instance, and for weights outside 0..=1; [`GpuError`].
+    /// [`InputError`] if `layer` is 0 (the base) or does not exist, if there is not one weight per instance, and for weights
+    /// outside 0..=1; [`GpuError`] for errors of the device.
     pub fn set_weights(&self, gpu: &Gpu, layer: usize, weights: &[f32]) -> Result<(), Error> {
         if !(1..self.layers).contains(&layer) {
             let bound = format!("must be in 1..{}, a layer above the base", self.layers);
@@ -179,13 +184,13 @@ impl Crowd {
         self.len() == 0
     }
 
-    /// Number of bones over all instances.
+    /// Number of (instance, bone) pairs: instances times bones per skeleton.
     pub fn pairs(&self) -> usize {
         self.len() * self.bones
     }
 }
 
-/// All weights, then all masks.
+/// Contents of `Crowd::layer_weights`: the weights of all layers, then the masks of all layers.
 fn all_layer_weights(layers: &[AnimationLayer], bones: usize) -> Vec<f32> {
     let mut layer_weights: Vec<f32> = layers.iter().flat_map(|layer| &layer.weights).copied().collect();
     for layer in layers {

@@ -1,20 +1,23 @@
-//! The state of gates on the device.
+//! Device buffers with the state that gates keep between frames.
 
 use super::crowd::Crowd;
 use super::lod::{Lod, PackedLod};
 use crate::gpu::{Buffer, Gpu, GpuError};
 use crate::shared::animation::gate_state::ClipClock;
 
-/// State of a crowd that gates keep from frame to frame. The caller may read and bind all buffers.
+/// State of a crowd that a gate keeps from frame to frame. The caller may read and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct GateState {
-    /// One level of detail per instance, written by the host ([`GateState::write_lods`]) or by a kernel; full detail
-    /// at first.
+    /// Level of detail of each instance, written by the host ([`GateState::write_lods`]) or by a kernel. Initially full detail.
     pub lods: Buffer<PackedLod>,
-    /// Clip clocks written by [`crate::animation::clip_clock::ClipClockPass`].
+    /// Clip clock of each instance, written by [`crate::animation::clip_clock::ClipClockPass`].
     pub clip_clocks: Buffer<ClipClock>,
-    /// Four words per instance: last clip + 1, with the highest bit set if there were layers above it; a hash of the clips of
-    /// these layers; and, as bits, the last time inside the clip and the time ahead. Zeros mean that no pose is stored.
+    /// Four words per instance. If all are zero, no pose is stored. The words are:
+    ///
+    /// - the last clip index + 1, with the highest bit set if layers above the base had weight;
+    /// - a hash of the clips of these layers;
+    /// - the last time inside the clip, as the bits of an `f32`;
+    /// - the look-ahead time inside the clip, as the bits of an `f32`.
     pub history: Buffer<[u32; 4]>,
     /// Accumulated motion of each slot of each instance when it was last sampled.
     pub sampled: Buffer<u32>,
@@ -24,7 +27,7 @@ impl GateState {
     /// Allocates the state of a crowd that has not been sampled yet.
     ///
     /// # Errors
-    /// [`GpuError`] if the device has no room.
+    /// [`GpuError`] if the device has no memory for the buffers.
     pub fn new(gpu: &Gpu, crowd: &Crowd) -> Result<Self, GpuError> {
         let instances = crowd.len();
         Ok(Self {
@@ -35,7 +38,7 @@ impl GateState {
         })
     }
 
-    /// Replaces the levels of detail of the first `lods.len()` instances, for later submissions.
+    /// Replaces the levels of detail of the first `lods.len()` instances. Later submissions use them.
     ///
     /// # Errors
     /// [`GpuError::Validation`] for more levels of detail than instances.

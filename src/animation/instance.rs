@@ -1,30 +1,30 @@
-//! Playback of a clip by an instance, with a start time and a rate.
+//! Playback of a clip by an instance, with a start time and a playback rate.
 
 use crate::InputError;
 use crate::shared::animation::clock;
 pub use crate::shared::animation::instance::AnimationInstance as Instance;
 
-/// Largest absolute value of a start, of elapsed seconds, and of a rate: about 30 years. Within it, products and sums stay
-/// finite.
+/// Largest absolute value of a start time, of elapsed seconds, and of a playback rate. As a time, it is about 30 years. Within
+/// this limit, products and sums of such values stay finite.
 pub const MAX_SECONDS: f32 = 1e9;
 
-/// Treatment of times outside a clip.
+/// Treatment of times before the start or after the end of a clip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum Wrap {
-    /// The clip repeats; its end coincides with its start.
+    /// The clip repeats. The clip's end coincides with its start.
     #[default]
     Loop = 0,
-    /// The first or the last pose is held.
+    /// Before its start the clip holds its first pose, and after its end its last pose.
     Clamp = clock::WRAP_CLAMP,
 }
 
 impl Wrap {
-    /// Time inside a clip of `duration` seconds, for `seconds` after its start. `seconds` is negative if the clip plays
-    /// backwards.
+    /// Maps `seconds` after the clip's start to a time inside a clip of `duration` seconds. `seconds` is negative if the clip
+    /// plays backwards. A duration of 0 gives 0.
     ///
     /// # Errors
-    /// [`InputError`] for seconds that are not finite.
+    /// [`InputError`] if `seconds` is not finite.
     pub fn inside(self, duration: f32, seconds: f64) -> Result<f32, InputError> {
         InputError::check_finite("time", seconds)?;
         let duration = f64::from(duration);
@@ -36,15 +36,15 @@ impl Wrap {
     }
 }
 
-/// Checks elapsed seconds.
+/// Checks that elapsed seconds are within ±[`MAX_SECONDS`].
 #[cfg(any(feature = "gpu", test))]
 pub(crate) fn check_elapsed(elapsed: f32) -> Result<(), InputError> {
     check_seconds("elapsed", elapsed)
 }
 
-/// Checks a number of seconds.
+/// Checks that a number of seconds is within ±[`MAX_SECONDS`]. Errors name it `field`.
 pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
-    // The comparison is false for NaN.
+    // The comparison is false for NaN, so NaN is refused.
     if value.abs() <= MAX_SECONDS {
         return Ok(());
     }
@@ -52,20 +52,21 @@ pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
 }
 
 impl Instance {
-    /// Plays a clip from a start in seconds, at a rate in clip seconds per second.
+    /// Creates an instance that plays clip number `clip`. `start` is its clip time in seconds at elapsed time 0. `rate` is in
+    /// clip seconds per second.
     pub fn new(clip: u32, wrap: Wrap, start: f32, rate: f32) -> Self {
         Self { clip, wrap_code: wrap as u32, start, rate }
     }
 
-    /// Treatment of times outside the clip.
+    /// Treatment of times before the start or after the end of the clip.
     pub fn wrap(&self) -> Wrap {
         if self.wrap_code == Wrap::Loop as u32 { Wrap::Loop } else { Wrap::Clamp }
     }
 
-    /// Checks that the clip is one of `clips`, and that start and rate are within ±[`MAX_SECONDS`].
+    /// Checks that the clip index is below `clips`, and that start and rate are within ±[`MAX_SECONDS`].
     ///
     /// # Errors
-    /// [`InputError`] that names the field.
+    /// [`InputError`] that names the first invalid field.
     pub fn validate(&self, clips: usize) -> Result<(), InputError> {
         InputError::check_below("instance.clip", self.clip, clips)?;
         check_seconds("instance.start", self.start)?;

@@ -1,16 +1,17 @@
-//! Animation layers: several clips per instance, blended one over the other.
+//! Animation layers: each instance plays several clips, blended one over the other.
 //!
-//! Layer 0 is the base, which every instance plays on all its bones. Each layer above it plays a clip with its own start, rate
-//! and wrap. It has a *weight* for each instance and a *mask* value for each bone. From the base upwards, each part
-//! (translation, rotation, scale) of a bone's pose becomes
+//! Layer 0 is the base: a clip that each instance plays on all its bones. Each layer above the base plays a clip with its own
+//! start, rate and wrap. A layer has a *weight* per instance and a *mask* value per bone. Blending goes from the base upwards.
+//! Let `below` be a bone's translation, rotation or scale after blending all lower layers. The next layer changes it to
 //!
 //! `below + (layer − below) · weight · mask`
 //!
-//! Rotations are blended along the chord to the nearer of q and −q and normalized (nlerp). They are exact at the weights
-//! 0 and 1. In between they are on the shortest arc, but not at constant speed: up to 0.002 rad off for rotations 45° apart,
-//! 0.016 for 90°, 0.14 for 180°. A layer is not loaded for a bone on which its weight times mask is 0.
+//! Rotations are blended along the chord to the nearer of q and −q, then normalized (nlerp). At the weights 0 and 1 they are
+//! exact. In between they are on the shortest arc, but their speed is not constant. The largest deviation is 0.002 rad for
+//! rotations 45° apart, 0.016 rad for 90° and 0.14 rad for 180°. A layer costs no memory reads on bones where weight times mask
+//! is 0.
 //!
-//! A cross-fade of two clips is one layer without a mask. An arm that waves during a walk is one layer with the mask of the arm
+//! A cross-fade of two clips is one layer without a mask. A walk with a waving arm is one layer with the mask of the arm
 //! ([`mask_below`]).
 //!
 //! ```
@@ -35,40 +36,45 @@ use crate::asset::skeleton::Skeleton;
 /// Largest number of layers of a crowd, including the base.
 pub const MAX_LAYERS: usize = 8;
 
-/// A layer above the base.
+/// An animation layer above the base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnimationLayer {
-    /// Clip that each instance plays on this layer.
+    /// Playback of each instance on this layer: clip, wrap, start and rate.
     pub instances: Vec<Instance>,
-    /// Weight for each instance, 0 to 1.
+    /// Weight of the layer for each instance, 0 to 1.
     pub weights: Vec<f32>,
     /// Mask value for each bone, 0 to 1; `None` means 1 on all bones.
     pub mask: Option<Vec<f32>>,
 }
 
 impl AnimationLayer {
-    /// A layer that affects all bones.
+    /// Creates a layer without a mask, which affects all bones. `instances` and `weights` have one entry per instance of the
+    /// crowd.
     pub fn new(instances: Vec<Instance>, weights: Vec<f32>) -> Self {
         Self { instances, weights, mask: None }
     }
 
-    /// The same layer with a mask.
+    /// Sets the layer's mask, one value from 0 to 1 per bone, and returns the layer.
     #[must_use]
     pub fn masked(self, mask: Vec<f32>) -> Self {
         Self { mask: Some(mask), ..self }
     }
 
-    /// The weight for an instance times the mask value for a bone.
+    /// Blend weight for one bone of one instance: the instance's weight times the bone's mask value.
     pub fn weight(&self, instance: usize, bone: usize) -> f32 {
         self.weights[instance] * self.mask.as_ref().map_or(1.0, |mask| mask[bone])
     }
 
-    /// Checks that the layer matches a crowd of `count` instances that play `clips` clips on `bones` bones. `path` is the
-    /// prefix of the field's name in errors.
+    /// Checks that the layer matches a crowd of `count` instances that play `clips` clips on `bones` bones. `path` is the prefix
+    /// of field names in errors.
     ///
     /// # Errors
-    /// [`InputError`] for numbers of instances or weights that are not one per instance, for a mask that is not one value per
-    /// bone, for weights and mask values outside 0..=1, and for instances of a clip that does not exist.
+    /// [`InputError`] in these cases:
+    ///
+    /// - there is not one playback and one weight per instance;
+    /// - the mask does not have one value per bone;
+    /// - a weight or mask value is outside 0..=1;
+    /// - an instance plays a clip that does not exist.
     pub fn validate(&self, path: &str, count: usize, clips: usize, bones: usize) -> Result<(), InputError> {
         let each = |field: &str, len: usize, wanted: usize, item: &str| {
             InputError::check_len(&format!("{path}.{field}"), len, wanted, item)
@@ -84,15 +90,15 @@ impl AnimationLayer {
     }
 }
 
-/// Refuses values outside 0..=1; the error names the first of them with its index.
+/// Returns an error if a value is outside 0..=1. The error names the first such value by its index.
 pub(crate) fn check_weights(path: &str, values: &[f32]) -> Result<(), InputError> {
     InputError::check_each(path, values, |value| (0.0..=1.0).contains(value), "must be in 0..=1")
 }
 
-/// Mask of a bone and all bones below it: 1 for these, 0 for others.
+/// Mask that selects a bone and its descendants: 1 for these bones, 0 for all others.
 ///
 /// # Errors
-/// [`InputError`] for a bone that the skeleton does not have.
+/// [`InputError`] if the skeleton has no such bone.
 pub fn mask_below(skeleton: &Skeleton, bone: usize) -> Result<Vec<f32>, InputError> {
     InputError::check_below("bone", bone, skeleton.len())?;
     let mut mask = vec![0.0; skeleton.len()];
@@ -105,7 +111,7 @@ pub fn mask_below(skeleton: &Skeleton, bone: usize) -> Result<Vec<f32>, InputErr
     Ok(mask)
 }
 
-/// The instances of all layers, the base first: the order of a crowd's buffers.
+/// Concatenates the instances of all layers, the base first. This is the order of a crowd's buffers.
 pub fn all_instances(base: &[Instance], layers: &[AnimationLayer]) -> Vec<Instance> {
     base.iter().chain(layers.iter().flat_map(|layer| &layer.instances)).copied().collect()
 }

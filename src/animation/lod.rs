@@ -1,45 +1,48 @@
-//! Level of detail of an instance in its view: how far away it is (A section 12.10), and how much motion it may miss before
-//! that is visible. The host quantizes these values, so that every device decides alike.
+//! Animation level of detail of an instance in its view: its detail by distance (thesis A, section 12.10), and the motion that it
+//! may miss before the error is visible. The host quantizes these values to integers, so that every device makes the same
+//! decisions.
 
 use crate::InputError;
 use crate::shared::animation::gate_state;
-/// Packed [`Lod`] that kernels read and write: the struct `Lod` of the WGSL module `animation`. Its `flags` are `LOD_HIDDEN`,
-/// `LOD_FORCED` or 0.
+/// Packed [`Lod`] that kernels read and write: the struct `Lod` of the WGSL module `animation`. The field `flags` is
+/// `LOD_HIDDEN`, `LOD_FORCED` or 0.
 pub use crate::shared::animation::gate_state::Lod as PackedLod;
 pub use crate::shared::animation::gate_state::{FULL_WEIGHT, OMEGA_ONE};
 
-/// An instance's level of detail.
+/// Animation level of detail of one instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Lod {
-    /// Ω, the level of detail by distance: 0 to [`OMEGA_ONE`], where nothing is skipped. See [`Range::omega`].
+    /// Ω, the level of detail by distance, 0 to [`OMEGA_ONE`]. At [`OMEGA_ONE`] nothing is skipped. See [`Range::omega`].
     pub omega: u32,
-    /// Motion that may be missed, in units of the gate's table. See [`Projection::allowed`].
+    /// Motion that may be missed, in units of the gate's table ([`BoundTable::units`](super::BoundTable::units)). See
+    /// [`Projection::allowed`].
     pub allowed: u32,
-    /// Weight of this instance's motion against that of other instances, 0 to [`FULL_WEIGHT`], proportional to its size on
-    /// screen.
+    /// Weight of this instance's motion relative to other instances, 0 to [`FULL_WEIGHT`]. It is proportional to the instance's
+    /// size on screen.
     pub weight: u32,
-    /// Bones that a frame samples.
+    /// Selects the bones that a frame samples: the gate's choice, none or all.
     pub sampling: BoneSampling,
 }
 
-/// Choice of the bones of an instance that a frame samples.
+/// Selects the bones of an instance that a frame samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum BoneSampling {
-    /// The bones that the gate chooses.
+    /// Samples the bones that the gate chooses.
     #[default]
     Gated,
-    /// No bones: the instance is not in view. It costs nothing, and is sampled in full when it comes back.
+    /// Samples no bones, because the instance is not in view. The instance costs nothing, and is sampled in full when it is
+    /// visible again.
     Hidden,
-    /// All bones, whatever the gate decides.
+    /// Samples all bones, whatever the gate decides.
     Forced,
 }
 
 impl Lod {
-    /// Full detail.
+    /// Full detail: no motion may be missed, and the gate skips nothing.
     pub const FULL: Self =
         Self { omega: OMEGA_ONE, allowed: 0, weight: FULL_WEIGHT, sampling: BoneSampling::Gated };
 
-    /// The packed level of detail that kernels read.
+    /// The level of detail in the packed form that kernels read.
     pub fn packed(&self) -> PackedLod {
         let flags = match self.sampling {
             BoneSampling::Gated => 0,
@@ -56,20 +59,21 @@ impl Default for Lod {
     }
 }
 
-/// The distances, in metres, between which detail falls from full to none.
+/// Distance range, in metres, over which the level of detail Ω falls from 1 to 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Distance up to which Ω is 1.
+    /// Distance in metres up to which Ω is 1.
     pub min: f32,
-    /// Distance from which on Ω is 0.
+    /// Distance in metres from which on Ω is 0.
     pub max: f32,
 }
 
 impl Range {
-    /// Checks the distances.
+    /// Checks that both distances are finite and that `0 ≤ min < max`.
     ///
     /// # Errors
-    /// [`InputError`] for a minimum that is negative or not finite, and a maximum that is not above it.
+    /// [`InputError`] for a minimum that is negative or not finite, and for a maximum that is not finite or not above the
+    /// minimum.
     pub fn validate(&self) -> Result<(), InputError> {
         if !(self.min >= 0.0 && self.min.is_finite()) {
             return Err(InputError::new("range.min", self.min, "must be at least 0 and finite"));
@@ -84,9 +88,10 @@ impl Range {
         Ok(())
     }
 
-    /// Ω at a distance, in 65536ths.
+    /// Ω at a distance in metres, 0 to [`OMEGA_ONE`].
     ///
-    /// **Decided**: `(max − d)/(max − min)`. A prints `(d − min)/(max − min)` (12.10), which contradicts its own end points.
+    /// **Decided**: Ω = `(max − d)/(max − min)`. Thesis A prints `(d − min)/(max − min)` (section 12.10), which contradicts the
+    /// end points that it gives.
     pub fn omega(&self, distance: f32) -> u32 {
         let fraction =
             (f64::from(self.max) - f64::from(distance)) / (f64::from(self.max) - f64::from(self.min));
@@ -94,25 +99,27 @@ impl Range {
     }
 }
 
-/// A camera's conversion from metres to pixels.
+/// Parameters of a camera that convert metres to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
-    /// Focal length in pixels: the size of a metre at a distance of one metre on the axis. It is half the picture's height in
-    /// pixels, divided by the tangent of half the field of view. Use the larger value of both directions.
+    /// Focal length in pixels: the size of one metre at a distance of one metre on the optical axis. It is half the picture's
+    /// height in pixels, divided by the tangent of half the vertical field of view. If the values of both directions differ, use
+    /// the larger one.
     pub focal_pixels: f32,
-    /// The distance of the near plane in metres.
+    /// Distance of the near plane in metres.
     pub near: f32,
 }
 
 impl Projection {
-    /// Projection of a picture of `height` pixels with a vertical field of view in radians.
+    /// Creates the projection of a picture that is `height` pixels high. `field_of_view` is vertical, in radians; `near` is the
+    /// distance of the near plane in metres.
     pub fn new(height: u32, field_of_view: f32, near: f32) -> Self {
         Self { focal_pixels: height as f32 / 2.0 / libm::tanf(field_of_view / 2.0), near }
     }
 
-    /// Largest distance, in metres, by which every point inside a sphere may be off while no point is drawn more than `pixels`
-    /// from its place. `center` is in camera space: x and y across, z along the view. The result is 0 if a part of the sphere
-    /// may reach the near plane. `docs/pixel-bounds.md` has the derivation.
+    /// Largest displacement, in metres, that moves every point of a sphere by at most `pixels` on screen. `center` is in camera
+    /// space: x and y across, z along the view direction. The result is 0 if displaced points might reach the near plane.
+    /// `docs/pixel-bounds.md` has the derivation.
     pub fn allowed(&self, center: [f32; 3], radius: f32, pixels: f32) -> f32 {
         let [x, y, z] = center.map(f64::from);
         let (radius, pixels, focal) = (f64::from(radius), f64::from(pixels), f64::from(self.focal_pixels));
@@ -141,7 +148,7 @@ mod tests {
         assert_eq!([refused(2.0, 2.0), refused(2.0, f32::INFINITY)], ["range.max", "range.max"]);
     }
 
-    /// Moves points inside spheres by the allowed distance in every direction, and projects them.
+    /// Displaces points inside spheres by the allowed distance in every direction, projects them, and checks the error in pixels.
     #[test]
     fn what_is_allowed_stays_within_the_pixels() {
         let projection = Projection::new(1080, 1.0, 0.1);

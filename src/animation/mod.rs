@@ -1,5 +1,5 @@
-//! Keyframe animation of skeletons (A sections 9 to 14). Crowds on the device have layers, gates and bounds; root motion is
-//! computed on the host.
+//! Keyframe animation of skeletons (thesis A, sections 9 to 14). Crowds of instances on the device have animation layers, gates
+//! (animation level of detail) and bounds. Root motion is computed on the host.
 
 pub mod active;
 pub mod bounds;

@@ -1,5 +1,5 @@
-//! Model matrices of a crowd's bones on the device, with the record of the matrices that frames update and of the consumers
-//! that were prepared.
+//! Model matrices of a crowd's bones on the device. The handle also records which matrices frames updated, and which consumers
+//! were prepared.
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,11 +8,12 @@ use crate::animation::updated_bones::UpdatedBones;
 use crate::asset::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError};
 
-/// Handle to the model matrices of instances' bones, at `instance · bones + bone`. Clones share the buffer and the record of
-/// prepared consumers.
+/// Handle to the model matrices of all instances' bones, at index `instance · bones + bone`. Clones share the buffer and the
+/// record of prepared consumers.
 ///
-/// A crowd under [`Gate::Bounded`](super::Gate::Bounded) cannot be skinned by dual quaternions, because the gate's bound holds
-/// for linear blending only. Whichever of the two is prepared first excludes the other, as long as a handle exists.
+/// A crowd under [`Gate::Bounded`](super::Gate::Bounded) cannot be skinned by dual quaternions, because the gate's error bound
+/// holds for linear blending only. Preparing the gate therefore excludes dual quaternion skinning, and the reverse, as long as
+/// any handle exists.
 #[derive(Debug, Clone)]
 pub struct ModelMatrices {
     matrices: Buffer<Affine>,
@@ -21,90 +22,92 @@ pub struct ModelMatrices {
 }
 
 impl ModelMatrices {
-    /// Wraps matrices that the caller writes; all of them may change in every frame. For a crowd's matrices, use
-    /// [`Crowd::model_matrices`](super::crowd::Crowd::model_matrices).
+    /// Wraps matrices that the caller writes. Consumers assume that all of them may change in every frame. For a crowd's
+    /// matrices, use [`Crowd::model_matrices`](super::crowd::Crowd::model_matrices).
     pub fn new(matrices: &Buffer<Affine>) -> Self {
         Self { matrices: matrices.clone(), updated_bones: None, consumer: ExclusiveConsumer::default() }
     }
 
-    /// The same matrices with a record of updates: frames change only matrices whose bit is set in `updated`.
+    /// Returns a handle to the same matrices, with a record of updates. Frames then change only matrices whose bit is set in
+    /// `updated`.
     #[must_use]
     pub fn with_updated_bones(&self, updated: &UpdatedBones) -> Self {
         Self { updated_bones: Some(updated.clone()), ..self.clone() }
     }
 
-    /// Bones updated since skinning last followed them. `None` means that any matrix may have changed.
+    /// Record of the bones that were updated since they were last skinned. `None` means that any matrix may have changed.
     pub fn updated_bones(&self) -> Option<&UpdatedBones> {
         self.updated_bones.as_ref()
     }
 
-    /// The wgpu buffer, to bind or to copy: three rows of four `f32` per matrix.
+    /// The wgpu buffer of the matrices, to bind or to copy. Each matrix has three rows of four `f32`.
     pub fn raw(&self) -> &wgpu::Buffer {
         self.matrices.raw()
     }
 
-    /// Reads the matrices; see [`Buffer::read`].
+    /// Reads the matrices back to the host; see [`Buffer::read`].
     ///
     /// # Errors
-    /// Errors of the device.
+    /// [`GpuError`] for errors of the device.
     pub async fn read(&self, gpu: &Gpu) -> Result<Vec<Affine>, GpuError> {
         self.matrices.read(gpu).await
     }
 
-    /// As [`ModelMatrices::read`], but blocks; see [`Buffer::read_blocking`].
+    /// Reads the matrices back like [`ModelMatrices::read`], but blocks; see [`Buffer::read_blocking`].
     ///
     /// # Errors
-    /// Errors of the device, or [`GpuError::Hung`].
+    /// [`GpuError`] for errors of the device, including [`GpuError::Hung`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<Affine>, GpuError> {
         self.matrices.read_blocking(gpu)
     }
 
-    /// The typed buffer. It is not public, because a second handle made from it would not share the record.
+    /// The typed buffer. Wrapping it in a second [`ModelMatrices`] loses the record of prepared consumers.
     pub fn buffer(&self) -> &Buffer<Affine> {
         &self.matrices
     }
 
-    /// The record of prepared consumers, shared by all handles to these matrices.
+    /// Record of prepared consumers, shared by all handles to these matrices.
     pub(crate) fn consumer(&self) -> &ExclusiveConsumer {
         &self.consumer
     }
 }
 
-/// A use of model matrices that excludes the other use.
+/// Uses of model matrices that exclude each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Consumer {
-    /// A gate that bounds the error of linearly blended vertices.
+    /// A gate that bounds the error of linearly blended vertices: `Gate::Bounded`.
     BoundedGate,
     /// Dual quaternion skinning.
     DualQuaternions,
 }
 
-/// The first [`Consumer`] that was prepared.
+/// The first [`Consumer`] that was prepared; empty if there is none yet.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ExclusiveConsumer(Arc<OnceLock<Consumer>>);
 
 impl ExclusiveConsumer {
-    /// Records a consumer permanently.
+    /// Records a consumer permanently. The other kind of consumer is refused from then on.
     ///
     /// # Errors
-    /// [`InputError`] if the other consumer came first.
+    /// [`InputError`] if the other kind of consumer was recorded first.
     pub(crate) fn claim(&self, consumer: Consumer) -> Result<(), InputError> {
         refuse_other(*self.0.get_or_init(|| consumer), consumer)
     }
 
-    /// Checks like [`ExclusiveConsumer::claim`], but records nothing.
+    /// Performs the check of [`ExclusiveConsumer::claim`] without recording the consumer.
     ///
     /// # Errors
-    /// [`InputError`] if the other consumer came first.
+    /// [`InputError`] if the other kind of consumer was recorded first.
     pub(crate) fn check(&self, consumer: Consumer) -> Result<(), InputError> {
         self.0.get().map_or(Ok(()), |first| refuse_other(*first, consumer))
     }
 
-    /// Refuses a list of active bones of another crowd, because that crowd would not know of the gate's bound.
+    /// Returns an error if a list of active bones belongs to another crowd. Otherwise the gate's error bound would not be
+    /// recorded for this crowd.
     ///
     /// # Errors
-    /// [`InputError`] for another crowd.
+    /// [`InputError`] if the two records are not shared.
     pub(crate) fn check_same(&self, of_list: &Self) -> Result<(), InputError> {
         if Arc::ptr_eq(&self.0, &of_list.0) {
             return Ok(());

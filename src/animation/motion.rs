@@ -1,8 +1,10 @@
-//! Bounds on the motion of each bone along a clip. They bound the error of a stale pose. The motion is the path of the bone's
-//! local transform along the clip's common timeline, weighted by how far the bone moves points of the model.
+//! Bounds on the motion of each bone along a clip. They bound the error of a pose that is not updated. Motion is a path length:
+//! the length of the path of a bone's local transform along the clip's common timeline. It is weighted by how far the bone moves
+//! points of the model.
 //!
-//! The path of a part is the sum of its changes from key to key. It is never shorter than the direct change between two times.
-//! `docs/pixel-bounds.md` has the bound on a point's error, and the path lengths of each interpolation.
+//! The path length of a translation, rotation or scale is the sum of its changes from key to key. It is never shorter than the
+//! direct change between two times. `docs/pixel-bounds.md` derives the bound on a point's error and the path lengths of each
+//! interpolation.
 
 use super::clip_set::{ClipEntry, ClipSet};
 use crate::asset::Bone;
@@ -10,22 +12,23 @@ use crate::asset::clip::{Clip, Interpolation, Track, TransformPart};
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// Number of samples of a spline of rotations between two keys.
+/// Number of samples of a rotation spline between two keys.
 const MOMENTS: usize = 64;
 
-/// Smallest norm of a rotation spline whose angular speed is bounded. Closer to zero, the rotation may jump by any angle.
+/// Smallest quaternion norm along a rotation spline at which the angular speed counts as bounded. Closer to zero, the rotation
+/// may jump by any angle.
 const SHORTEST: f64 = 0.01;
 
-/// Path length of one part of one bone, at the times of the common timeline.
+/// Path length of the translation, rotation or scale of one bone, split at the times of the common timeline.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Path {
-    /// Length from each time to the next, at constant speed; 0 after the last.
+    /// Path length from each time to the next, at constant speed; 0 after the last time.
     pub rises: Vec<f64>,
-    /// Length of the jump at each time.
+    /// Length of the instantaneous jump at each time.
     pub jumps: Vec<f64>,
-    /// Length from the end of the clip to its start.
+    /// Distance from the value at the clip's end to the value at its start.
     pub wrap: f64,
-    /// Whether the speed is unbounded somewhere.
+    /// Whether no bound on the speed is known somewhere along the clip.
     pub is_boundless: bool,
 }
 
@@ -34,27 +37,27 @@ impl Path {
         Self { rises: vec![0.0; times], jumps: vec![0.0; times], wrap: 0.0, is_boundless: false }
     }
 
-    /// Accumulated motion over the whole clip, including the way back to its start.
+    /// Path length over the whole clip, including the return from its end to its start.
     pub fn total(&self) -> f64 {
         self.rises.iter().chain(&self.jumps).sum::<f64>() + self.wrap
     }
 }
 
-/// The motion of one bone along a clip.
+/// Motion of one bone along a clip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoneMotion {
-    /// Paths of translation, rotation and scale, in metres, radians and scale factors.
+    /// Paths of translation (in metres), rotation (in radians) and scale (as factors).
     pub parts: [Path; 3],
-    /// Largest distance of the bone's origin from its parent's, in metres.
+    /// Largest distance of the bone's origin from the parent's origin, in metres.
     pub translation: f64,
-    /// The bone's largest scale along an axis.
+    /// Largest scale factor of the bone along any axis.
     pub scale: f64,
 }
 
-/// The motion of every bone along a clip.
+/// Motion of every bone along a clip. `path` is the rotation path between keys.
 ///
 /// # Panics
-/// If the clip is not the one of `entry` in the set.
+/// If `clip` is not the clip that `entry` stands for in the set.
 pub fn motions(set: &ClipSet, entry: &ClipEntry, clip: &Clip, path: RotationPath) -> Vec<BoneMotion> {
     let times = set.common_times(entry);
     (0..clip.bones()).map(|bone| bone_motion(clip, bone, times, path)).collect()
@@ -74,13 +77,13 @@ fn bone_motion(clip: &Clip, bone: usize, times: &[f32], path: RotationPath) -> B
 
 type Value = [f64; 4];
 
-/// A track's keys in f64.
+/// Keys of one track, converted to f64.
 struct Keys<'a> {
     part: TransformPart,
     path: RotationPath,
     interpolation: Interpolation,
     times: &'a [f32],
-    /// One value per key, or three.
+    /// Values in key order: one per key, or three per key of a cubic spline.
     values: Vec<Value>,
 }
 
@@ -102,14 +105,14 @@ impl<'a> Keys<'a> {
         if self.is_spline() { &self.values[3 * key + 1] } else { &self.values[key] }
     }
 
-    /// The distance between two values.
+    /// Distance between two values: metres, radians or the largest difference of scale factors.
     fn distance(&self, a: &Value, b: &Value) -> f64 {
         let minus = |a: &Value, b: &Value| std::array::from_fn(|i| a[i] - b[i]);
         match self.part {
             TransformPart::Translation => length(&minus(a, b)),
             TransformPart::Rotation => {
                 let [a, b] = [a, b].map(normalized);
-                // Distance along the chord to the nearer of q and −q.
+                // Angle along the arc to the nearer of q and −q, from the lengths of both chords.
                 let plus: Value = std::array::from_fn(|i| a[i] + b[i]);
                 let (near, far) = (length(&minus(&a, &b)), length(&plus));
                 4.0 * near.min(far).atan2(near.max(far))
@@ -144,8 +147,8 @@ impl<'a> Keys<'a> {
         path
     }
 
-    /// Largest speed between a key and the next, per unit of the fraction; `None` if there is no bound. `way` is the distance
-    /// between the two keys' values.
+    /// Largest speed between `key` and the next key, per unit of the fraction between them; `None` if there is no bound. `way` is
+    /// the distance between the values of both keys.
     fn speed(&self, key: usize, way: f64) -> Option<f64> {
         if self.is_spline() {
             let bezier = self.bezier(key);
@@ -164,7 +167,8 @@ impl<'a> Keys<'a> {
         Some(if is_chord && quarter > 0.0 { way * quarter.tan() / quarter } else { way })
     }
 
-    /// Control points of a spline between two keys; its tangents are already in units of the segment.
+    /// Bézier control points of the spline between `key` and the next key. The spline's tangents are already in units of the
+    /// segment.
     fn bezier(&self, key: usize) -> [Value; 4] {
         let [start, leaving, arriving, end] = [1, 2, 3, 4].map(|at| self.values[3 * key + at]);
         let off = |point: Value, tangent: Value, side: f64| -> Value {
@@ -173,7 +177,7 @@ impl<'a> Keys<'a> {
         [start, off(start, leaving, 1.0), off(end, arriving, -1.0), end]
     }
 
-    /// Points whose convex hull contains all values.
+    /// Returns points whose convex hull contains all values of the track.
     fn hull(&self) -> Vec<Value> {
         if !self.is_spline() {
             return self.values.clone();
@@ -185,7 +189,8 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// Largest angular speed of a normalized quaternion spline, per unit of the fraction. `speed` is the spline's largest speed.
+/// Largest angular speed of a normalized quaternion spline, in radians per unit of the fraction. `speed` is the largest speed of
+/// the spline before normalization. `None` if the spline may come too close to zero.
 fn turn_of_spline(bezier: &[Value; 4], speed: f64) -> Option<f64> {
     let at = |t: f64| -> Value {
         let u = 1.0 - t;
@@ -193,7 +198,7 @@ fn turn_of_spline(bezier: &[Value; 4], speed: f64) -> Option<f64> {
         std::array::from_fn(|i| (0..4).map(|point| weights[point] * bezier[point][i]).sum())
     };
     let moments = (0..=MOMENTS).map(|moment| length(&at(moment as f64 / MOMENTS as f64)));
-    // Between two samples, the spline is at most half a step from one of them.
+    // Between two samples, every point of the spline is at most half a step from one of them.
     let least = moments.fold(f64::INFINITY, f64::min) - speed / (2 * MOMENTS) as f64;
     (least > SHORTEST).then(|| 2.0 * speed / least)
 }
@@ -211,12 +216,12 @@ fn normalized(value: &Value) -> Value {
     value.map(|x| x / length)
 }
 
-/// Lever arms of each bone: factors for the [`Path`]s of translation, rotation and scale, in metres per unit. They tell how far
-/// each part moves points.
+/// Lever arms of each bone: factors that convert the [`Path`]s of its translation, rotation and scale to metres. They tell how
+/// far points move per unit of each path.
 pub type Levers = Vec<[f64; 3]>;
 
 /// Upper bounds of the lever arms, for any point that follows the bone. `bone_radii` gives, for each bone, the largest distance
-/// in metres from its origin to a point that follows it alone.
+/// in metres from its origin to a point that follows only this bone.
 pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[f32]) -> Levers {
     let bone_radius = subtree_radii(skeleton, motions, bone_radii);
     let mut above = vec![1.0; motions.len()];
@@ -231,8 +236,8 @@ pub fn bounding_levers(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: 
     levers
 }
 
-/// Radius of each bone's subtree: the largest distance from the bone's origin to a point that follows it or a bone below it,
-/// before the bone's own scale.
+/// Radius of each bone's subtree: the largest distance, in metres, from the bone's origin to a point that follows the bone or a
+/// descendant. The bone's own scale is not applied.
 pub fn subtree_radii(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[f32]) -> Vec<f64> {
     let mut whole: Vec<f64> = bone_radii.iter().copied().map(f64::from).collect();
     for (bone, node) in skeleton.bones().iter().enumerate().rev() {
@@ -244,14 +249,14 @@ pub fn subtree_radii(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[
     whole
 }
 
-/// Typical lever arms: the root of the sum of squares of how far points move. It counts points at `bone_radii` from each bone
-/// of the subtree, at rest, in the model's units, averaged over directions.
+/// Typical lever arms: the root of the sum of squares of point displacements, averaged over directions. Each bone of the subtree
+/// contributes points at distance `bone_radii` from its origin. Positions are in the rest pose, in the model's units.
 pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
     let model_matrices =
         crate::animation::local_to_model::reference::local_to_model(skeleton, &skeleton.rest());
     let origin = |bone: usize| glam::DVec3::from_array(model_matrices[bone].map(|row| f64::from(row[3])));
     let scales_above = skeleton.scales_above();
-    // Per bone: the number of points and the sums of squares of their distances.
+    // Per bone: the number of points, then the sums of squared distances across and along an axis.
     let mut sums = vec![[0.0; 3]; model_matrices.len()];
     for (bone, bone_radius) in bone_radii.iter().enumerate() {
         let own = (f64::from(*bone_radius) * scales_above[bone] * skeleton.bones()[bone].scale()).powi(2);
@@ -261,7 +266,7 @@ pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
         for above in path {
             let square = origin(bone).distance_squared(origin(above)) + own;
             let [points, across, along] = &mut sums[above];
-            // Two of three directions lie across an axis.
+            // Two of the three axis directions lie across an axis.
             (*points, *across, *along) = (*points + 1.0, *across + square * 2.0 / 3.0, *along + square / 3.0);
         }
     }
@@ -272,10 +277,11 @@ pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
     sums.into_iter().zip(scales_above).zip(skeleton.bones()).map(lever).collect()
 }
 
-/// Fraction that each bone should take of the error budget that its ancestors leave.
+/// Fraction of the remaining error budget that each bone should take. The remaining budget is the part that the bone's ancestors
+/// leave.
 ///
-/// A bone that moves at rate r and has the part s of the whole budget is sampled r/s times. The smallest number of samples of a
-/// subtree with budget b is K/b. For a leaf, K = r. For a bone above subtrees, K = (√r + √ΣK)², and the bone takes the fraction
+/// A bone that moves at rate r and gets the part s of the whole budget is sampled r/s times. A subtree with budget b needs at
+/// least K/b samples. For a leaf, K = r. For a bone with subtrees below it, K = (√r + √ΣK)², and the bone takes the fraction
 /// √r/(√r + √ΣK).
 pub fn budget_fractions(skeleton: &Skeleton, rates: &[f64]) -> Vec<f64> {
     let bones = skeleton.bones();

@@ -1,35 +1,35 @@
-//! The order in which bones are walked: parents first, split into chains.
+//! Order in which kernels process the bones of a skeleton: parents first, split into chains.
 
 use crate::asset::skeleton::Skeleton;
 pub use crate::shared::animation::order::Chain;
 #[cfg(feature = "gpu")]
 use crate::shared::animation::order::{self as packed, CONTINUES, NO_PARENT};
 
-/// One position in an [`Order`], and the bone there.
+/// Position in an [`Order`], with the bone at this position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slot {
-    /// Index of the bone.
+    /// Index of the bone in the skeleton.
     pub bone: u32,
-    /// Location of the bone's parent.
+    /// Where to find the bone's parent.
     pub parent: SlotParent,
-    /// Number of slots of the bone's subtree, starting with this one.
+    /// Number of slots of the bone's subtree, including this slot. The subtree's slots are contiguous.
     pub subtree: u32,
 }
 
-/// Location of the parent of a slot's bone.
+/// Where to find the parent of a slot's bone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SlotParent {
     /// The bone is a root.
     Root,
-    /// The parent is the bone of the previous slot: the slot continues its chain.
+    /// The parent is the bone of the previous slot. The slot continues the chain of its parent.
     PreviousSlot,
-    /// The parent is the bone of this index: the slot begins a chain.
+    /// The parent is the bone with this index. The slot begins a new chain.
     Bone(u32),
 }
 
 #[cfg(feature = "gpu")]
 impl Slot {
-    /// The packed slot that kernels read.
+    /// The slot in the packed form that kernels read.
     pub(crate) fn packed(&self) -> packed::Slot {
         let parent = match self.parent {
             SlotParent::Root => NO_PARENT,
@@ -40,28 +40,30 @@ impl Slot {
     }
 }
 
-/// The order in which a skeleton's bones are walked, split into chains so that as few chains as possible wait for each other.
+/// Order in which a skeleton's bones are processed, parents first. It is split into chains such that dependencies between chains
+/// form few levels.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Order {
-    /// Every bone once.
+    /// One slot per bone; parents come before their children.
     pub slots: Vec<Slot>,
-    /// The chains, by level: first those that depend on no other, then those that depend on these, and so on.
+    /// Chains, sorted by level. Chains of the first level depend on no other chain. Chains of each further level depend on chains
+    /// of earlier levels.
     pub chains: Vec<Chain>,
-    /// Start of each level of chains in `chains`; one entry more than there are levels.
+    /// Index in `chains` of the first chain of each level, followed by the number of chains.
     pub levels: Vec<u32>,
 }
 
 impl Order {
-    /// The order of a skeleton's bones.
+    /// Computes the order of a skeleton's bones.
     pub fn new(skeleton: &Skeleton) -> Self {
         let target = remap(skeleton);
         let others = other_children(skeleton, &target);
         let bones = skeleton.bones();
         let mut slots: Vec<Slot> = Vec::with_capacity(bones.len());
-        // The chains of each level.
+        // Chains found so far, by level.
         let mut chains: Vec<Vec<Chain>> = Vec::new();
         let roots = (0..bones.len() as u32).filter(|bone| bones[*bone as usize].parent.is_none());
-        // Stack of the first bones of chains still to be walked, with their levels; the last entry is next.
+        // Stack of chains that are still to be processed: the first bone of each and its level. The last entry is processed next.
         let mut waiting: Vec<(u32, usize)> = roots.rev().map(|root| (root, 0)).collect();
         while let Some((first_bone, level)) = waiting.pop() {
             let first = slots.len() as u32;
@@ -80,7 +82,7 @@ impl Order {
         }
         let mut order = Self { slots, chains: Vec::new(), levels: vec![0] };
         for mut level in chains {
-            // Threads of one instance lie side by side, with chains of similar length where possible.
+            // Sort by length, so that neighbouring threads of one instance process chains of similar length.
             level.sort_by_key(|chain| std::cmp::Reverse(chain.count));
             order.chains.extend(level);
             order.levels.push(order.chains.len() as u32);
@@ -88,26 +90,26 @@ impl Order {
         order
     }
 
-    /// The slot of each bone.
+    /// Slot index of each bone, by bone index.
     pub(crate) fn slots_of_bones(&self) -> Vec<usize> {
         let mut slot_of = vec![0; self.slots.len()];
         self.slots.iter().enumerate().for_each(|(at, slot)| slot_of[slot.bone as usize] = at);
         slot_of
     }
 
-    /// The packed slots that kernels read.
+    /// All slots in the packed form that kernels read.
     #[cfg(feature = "gpu")]
     pub(crate) fn packed_slots(&self) -> Vec<packed::Slot> {
         self.slots.iter().map(Slot::packed).collect()
     }
 
-    /// Number of 32-bit words that hold one bit per bone.
+    /// Number of 32-bit words per instance that hold one bit per bone.
     pub fn words(&self) -> usize {
         self.slots.len().div_ceil(32)
     }
 }
 
-/// For each bone, the children that do not continue its chain.
+/// For each bone, the children that do not continue its chain, but begin chains of their own.
 fn other_children(skeleton: &Skeleton, target: &[Option<u32>]) -> Vec<Vec<u32>> {
     let mut others = vec![Vec::new(); skeleton.len()];
     for (bone, node) in (0..).zip(skeleton.bones()) {
@@ -120,17 +122,17 @@ fn other_children(skeleton: &Skeleton, target: &[Option<u32>]) -> Vec<Vec<u32>> 
     others
 }
 
-/// For each bone, the child that continues its chain: the one with the most levels of chains below it or, if equal, the most
-/// bones.
+/// For each bone, the child that continues its chain. It is the child with the most levels of chains in its subtree or, if equal,
+/// the most bones.
 fn remap(skeleton: &Skeleton) -> Vec<Option<u32>> {
     let mut target: Vec<Option<u32>> = vec![None; skeleton.len()];
-    // Number of levels that a bone's subtree needs if the bone's chain continues into it.
+    // Levels of chains that a bone's subtree needs, counting the chain through the bone as the first.
     let mut levels = vec![1_u32; skeleton.len()];
     let mut best: Vec<(u32, u32)> = vec![(0, 0); skeleton.len()];
     for (bone, node) in skeleton.bones().iter().enumerate().rev() {
         let Some(parent) = node.parent.map(|parent| parent as usize) else { continue };
         let rank = (levels[bone], skeleton.descendants()[bone] + 1);
-        // The child that continues the chain needs no extra level; each other child needs one more.
+        // The child that continues the chain needs no extra level. Every other child needs one more level.
         if rank >= best[parent] {
             levels[parent] = levels[parent].max(rank.0).max(best[parent].0 + u32::from(best[parent].0 > 0));
             best[parent] = rank;
@@ -154,8 +156,8 @@ mod tests {
         Skeleton::of_joints(parents.iter().map(bone).collect()).expect("valid")
     }
 
-    /// Checks that every bone occurs once, parents first, that subtrees are contiguous, and that chains wait only for chains of
-    /// lower levels.
+    /// Checks that every bone occurs once and parents come first, that subtrees are contiguous, and that chains depend only on
+    /// chains of lower levels.
     fn check(skeleton: &Skeleton) -> Order {
         let order = Order::new(skeleton);
         let mut slot_of = vec![usize::MAX; skeleton.len()];
@@ -213,7 +215,7 @@ mod tests {
 
     #[test]
     fn few_chains_wait_for_each_other() {
-        // A full binary tree of 10 levels needs as many levels of chains.
+        // A full binary tree of 10 levels needs 10 levels of chains.
         let tree: Vec<_> = (0..1023_u32).map(|bone| bone.checked_sub(1).map(|bone| bone / 2)).collect();
         assert_eq!(check(&skeleton(&tree)).levels.len() - 1, 10);
         let model = crate::samples::creature().expect("valid");

@@ -1,32 +1,32 @@
-//! Priority of each key of each bone: how much the key contributes to the shape of the character (A section 12). Priorities are
-//! computed once per clip, at load time.
+//! Priority of each key of each bone: how much the key contributes to the shape of the character (thesis A, section 12).
+//! Priorities are computed once per clip, at load time.
 //!
-//! The keys of a bone are the distinct times of its translation, rotation and scale keys together. Each key has six terms from
-//! 0 to 1:
+//! A bone has one key per distinct time of its translation, rotation and scale keys. Each key has six terms from 0 to 1:
 //!
 //! | term | value | divided by |
 //! |---|---|---|
-//! | translation | distance from this key to the next, times the largest scales above it at rest | the clip's largest |
+//! | translation | distance from this key to the next, times the largest scale of each ancestor at rest | the clip's largest |
 //! | rotation | angle from this key to the next, in radians | the clip's largest |
-//! | scale | length of the difference of both scales, divided by the bone's largest at rest | the clip's largest |
+//! | scale | change of scale from this key to the next, divided by the bone's largest scale at rest | the clip's largest |
 //! | children | number of descendants | the skeleton's largest |
-//! | depth | D − d + 1 for a bone d steps from the root, where D is the depth of the deepest | D + 1 |
+//! | depth | D − d + 1 for a bone d steps from the root, where D is the depth of the deepest bone | D + 1 |
 //! | user | given for each bone; ½ by default | 1 |
 //!
-//! A priority is the weighted mean of the terms.
+//! A key's priority is the weighted mean of its six terms.
 //!
-//! A term is 0 if its largest value is below [`NOISE`] (for translations, relative to the model's size), so that noise never
-//! becomes important. If the clip loops, the last key is followed by the bone's first. Otherwise nothing follows it, and its
-//! first three terms are 0.
+//! A term is 0 if the largest value that it is divided by is below [`NOISE`] (for translations, relative to the model's size).
+//! Noise thus never becomes important. If the clip loops, the bone's last key is followed by its first. Otherwise the last key
+//! has no next key, and its first three terms are 0.
 //!
-//! **Decided**: a key is compared with the next one, as in A's equations (12.2 to 12.4). A's prose compares it with the
-//! previous one (10.6, 14). A bone that skips updates after a key misses the motion towards the next.
+//! **Decided**: a key is compared with the next one, as in the equations of thesis A (12.2 to 12.4). The thesis's prose compares
+//! it with the previous one (10.6, 14). The next key is right, because a bone that skips updates after a key misses the motion
+//! towards the next key.
 //!
-//! **Decided**: the rotation term is the angle, as A's prose means it (11.2). A's equation (12.3) is the dot product of two
-//! quaternions, which is *largest* when nothing rotates, and which distinguishes q from −q.
+//! **Decided**: the rotation term is the angle, as the prose of thesis A means it (11.2). Equation 12.3 is the dot product of two
+//! quaternions. That product is *largest* when nothing rotates, and it distinguishes q from −q.
 //!
-//! **Decided**: the depth term is highest at the root, as in A's prose (10.5, 11.5). The equation of 12.7, d/D, grows away from
-//! the root; that of 10.5, D/d, divides by 0 at the root.
+//! **Decided**: the depth term is highest at the root, as in the prose of thesis A (10.5, 11.5). The equation d/D of section 12.7
+//! grows away from the root. The equation D/d of section 10.5 divides by 0 at the root.
 
 mod analyze;
 mod differences;
@@ -39,32 +39,32 @@ use crate::asset::skeleton::Skeleton;
 use differences::{Difference, Differences};
 pub use differences::{key_times, size};
 
-/// Threshold below which a term's largest value counts as 0: in radians, factors of the scale at rest, and fractions of the
-/// model's size.
+/// Threshold below which the largest value of a term counts as 0. It is in radians for rotations, a factor of the scale at rest
+/// for scales, and a fraction of the model's size for translations.
 pub const NOISE: f64 = 1e-6;
 
-/// Default of a bone's user term.
+/// Default value of a bone's user term.
 pub const USER_DEFAULT: f32 = 0.5;
 
-/// Names of the terms, in order.
+/// Names of the six terms of a priority, in the order of their weights.
 pub const TERMS: [&str; 6] = ["translation", "rotation", "scale", "children", "depth", "user"];
 
-/// Weights of the six terms; they sum to 1.
+/// Weights of the six terms of a priority, in the order of [`TERMS`]. They must sum to 1.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Weights(pub [f64; 6]);
 
 impl Default for Weights {
-    /// Equal weights, as in A.
+    /// Equal weights of 1/6, as in thesis A.
     fn default() -> Self {
         Self([1.0 / 6.0; 6])
     }
 }
 
 impl Weights {
-    /// Checks each weight and the sum.
+    /// Checks that each weight is within 0..=1 and that the weights sum to 1.
     ///
     /// # Errors
-    /// [`InputError`] for weights outside 0..=1, and for a sum that is more than 1e-4 from 1.
+    /// [`InputError`] for weights outside 0..=1, and if the sum differs from 1 by more than 1e-4.
     pub fn validate(&self) -> Result<(), InputError> {
         for (weight, term) in self.0.iter().zip(TERMS) {
             InputError::check_within(format!("weights.{term}"), *weight, 0.0..=1.0)?;
@@ -80,33 +80,33 @@ impl Weights {
 /// The priority of one key of one bone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KeyPriority {
-    /// Index of the bone.
+    /// Index of the bone in the skeleton.
     pub bone: u32,
-    /// Index of the key among the bone's keys.
+    /// Index of the key within the bone's keys.
     pub key: u32,
-    /// Time in seconds.
+    /// Time of the key in seconds.
     pub time: f32,
-    /// The terms in the order of [`TERMS`], each 0 to 1.
+    /// Terms in the order of [`TERMS`], each 0 to 1.
     pub terms: [f32; 6],
-    /// The weighted mean of the terms.
+    /// Priority of the key, 0 to 1: the weighted mean of its terms.
     pub priority: f32,
 }
 
-/// Priorities of all keys of a clip: bone by bone, key by key.
+/// Priorities of all keys of a clip, bone by bone and key by key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Priorities {
-    /// All keys.
+    /// The keys of all bones, one bone after another.
     pub keys: Vec<KeyPriority>,
-    /// Start of each bone's keys in `keys`; one entry more than there are bones.
+    /// Index in `keys` of the first key of each bone, followed by the number of keys.
     pub offsets: Vec<u32>,
 }
 
 impl Priorities {
-    /// Computes the priorities of the keys of a clip that plays with `wrap`. `user` has one value per bone, 0 to 1.
+    /// Computes the priorities of all keys of a clip that plays with `wrap`. `user` has one user term per bone, 0 to 1.
     ///
     /// # Errors
-    /// [`InputError`] for invalid weights ([`Weights::validate`]), for a clip of another skeleton, and for user values that are
-    /// not one per bone or that are outside 0..=1.
+    /// [`InputError`] for invalid weights ([`Weights::validate`]), for a clip of another skeleton, if `user` does not have one
+    /// value per bone, and for values in `user` outside 0..=1.
     pub fn new(
         skeleton: &Skeleton,
         clip: &Clip,
@@ -132,7 +132,7 @@ impl Priorities {
         Ok(Self { keys, offsets: differences.offsets })
     }
 
-    /// The keys of a bone.
+    /// Priorities of the keys of one bone, in order of time.
     pub fn of(&self, bone: usize) -> &[KeyPriority] {
         &self.keys[self.offsets[bone] as usize..self.offsets[bone + 1] as usize]
     }
@@ -150,7 +150,8 @@ mod tests {
     use crate::asset::skeleton::Bone;
     use crate::asset::transform::Transform;
 
-    /// root ─ arm ─ hand, and a leg below the root. Descendants: 3, 1, 0, 0. Steps from the root: 0, 1, 2, 1.
+    /// The bones are root ─ arm ─ hand, and a leg below the root. Descendants per bone: 3, 1, 0, 0. Steps from the root: 0, 1, 2,
+    /// 1.
     fn skeleton() -> Skeleton {
         let rest = Transform::from_translation([0.0, 1.0, 0.0]);
         let bone = |parent| Bone { name: String::new(), parent, rest };
@@ -162,7 +163,8 @@ mod tests {
         Some(Keys { times, values, interpolation: Interpolation::Linear })
     }
 
-    /// The root moves 2 m, then 1 m; the arm turns by ¼, then ⅛ of a turn; the hand grows by 0.6 in a key of its own.
+    /// The root moves 2 m, then 1 m. The arm turns by ¼, then ⅛ of a turn. The hand grows by 0.6 between two scale keys, and has
+    /// a translation key between them.
     fn clip() -> Clip {
         let turn = |turns: f32| {
             let half = turns * std::f32::consts::PI;
@@ -198,7 +200,7 @@ mod tests {
     fn terms_are_those_computed_by_hand() {
         let found = of(Wrap::Clamp, Weights::default());
         assert_eq!(found.offsets, [0, 3, 6, 9, 9]);
-        // The largest values: 2 m, ¼ turn, 0.6; 3 descendants, depth 2.
+        // Largest values in the clip: 2 m, ¼ turn, scale change 0.6. In the skeleton: 3 descendants, depth 2.
         close(
             found.of(0),
             &[
@@ -216,7 +218,7 @@ mod tests {
                 (2.0, [0.0, 0.0, 0.0, third, two_thirds, 0.5]),
             ],
         );
-        // The keys at 0, 1 and 2 together; the scale is halfway at 1.
+        // The hand's keys are at 0, 1 and 2. Its scale is halfway at 1.
         close(
             found.of(2),
             &[
@@ -228,7 +230,7 @@ mod tests {
         assert!(found.of(3).is_empty());
     }
 
-    /// The root stands still, jumps, and stands still: the key before the jump counts, not the key after it.
+    /// The root stands still, jumps, and stands still again. The key before the jump must count, not the key after it.
     #[test]
     fn a_key_is_compared_with_the_next_one() {
         let x = |x: f32| [x, 0.0, 0.0, 0.0];
@@ -245,7 +247,7 @@ mod tests {
     #[test]
     fn loops_lead_back_to_the_first_key() {
         let found = of(Wrap::Loop, Weights::default());
-        // From (2, 1) to 0: √5 m is now the largest translation, and ⅜ of a turn the largest rotation.
+        // The loop leads from (2, 1) back to 0. √5 m is now the largest translation, and ⅜ of a turn the largest rotation.
         let far = 5.0_f32.sqrt();
         assert!(
             (found.of(0)[0].terms[0] - 2.0 / far).abs() < 1e-6
@@ -255,7 +257,7 @@ mod tests {
             (found.of(1)[0].terms[1] - 2.0 / 3.0).abs() < 1e-6
                 && (found.of(1)[2].terms[1] - 1.0).abs() < 1e-6
         );
-        // 0.3 + 0.3 forward, 0.6 back.
+        // The scale changes by 0.3 and 0.3 forward, then by 0.6 back.
         assert!((found.of(2)[0].terms[2] - 0.5).abs() < 1e-6 && (found.of(2)[2].terms[2] - 1.0).abs() < 1e-6);
     }
 
@@ -278,18 +280,18 @@ mod tests {
         let bones = [BoneKeys { translation: tiny, ..BoneKeys::default() }];
         let bones: Vec<_> = bones.into_iter().chain(vec![BoneKeys::default(); 3]).collect();
         let clip = Clip::new("test", &skeleton(), &bones, 0.0).expect("valid");
-        // The skeleton is 2 m tall: 1e-6 m is less than 1e-6 of it.
+        // The skeleton is 2 m tall. A motion of 1e-6 m is less than 1e-6 of this height.
         let found =
             Priorities::new(&skeleton(), &clip, Wrap::Loop, &Weights::default(), &[0.5; 4]).expect("valid");
         assert!((size(&skeleton()) - 2.0).abs() < 1e-6);
         assert!(found.keys.iter().all(|key| key.terms[..3] == [0.0; 3]));
     }
 
-    /// Below a bone with another scale, translations count by their size in the model, and noise stays noise.
+    /// Translations below a bone with another scale count by their size in model space, and noise stays noise.
     #[test]
     fn units_do_not_matter() {
-        // A model 2 m tall, and the same with bones scaled and animated in other units; the arm's scale is
-        // twice the hand's.
+        // Compares a model 2 m tall with the same model in other units: bones are scaled and animated accordingly. The arm's
+        // translation is twice the root's, and the hand's is half the root's.
         let found = |scale: f32, noise: f32| {
             let rest = |at: usize| Transform {
                 translation: [0.0, if at == 0 { 1.0 } else { 1.0 / scale }, 0.0],
@@ -301,7 +303,7 @@ mod tests {
                 plain.bones().iter().enumerate().map(|(at, bone)| Bone { rest: rest(at), ..bone.clone() });
             let skeleton = Skeleton::of_joints(bones.collect()).expect("valid");
             let moved = |x: f32| keys(&[0.0, 1.0], &[[0.0; 4], [x * noise, 0.0, 0.0, 0.0]]);
-            // The rounding of the scale, as large as noise can be.
+            // A scale change by rounding, as large as noise can be.
             let grown = scale * (1.0 + 5e-7);
             let bones = [
                 BoneKeys {

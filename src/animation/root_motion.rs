@@ -1,25 +1,26 @@
-//! Root motion: the part of a clip that moves a character through its world. It is taken out of the clip and given to the
-//! caller, who moves the character; the clip then plays in place.
+//! Root motion: the part of a clip that moves a character through its world. It is removed from the clip, which then plays in
+//! place. The caller moves the character by the root motion instead.
 //!
-//! [`RootMotion::extract`] does this once per clip, at load time. [`RootMotion::delta`] then returns the motion of an instance
-//! between two times, across any number of loops, backwards, and up to the ends of a clamped clip:
+//! [`RootMotion::extract`] separates the motion once per clip, at load time. [`RootMotion::delta`] returns the motion of an
+//! instance between two times. The interval may span any number of loops, run backwards, and reach the ends of a clamped clip:
 //!
 //! `world(to) = world(from) · delta(from, to)`
 //!
-//! It takes a few lookups per instance on the host. The host keeps the characters' placements and asks physics and navigation
-//! before it moves them. [`deltas`] handles a crowd without allocation.
+//! A delta takes a few lookups per instance on the host. It is computed on the host because the host keeps the characters'
+//! placements and asks physics and navigation before it moves them. [`deltas`] handles a crowd without allocation.
 //!
 //! # What is taken
 //!
-//! Let p and q be the root bone's position and rotation in model space at some time, and p₀ and q₀ those at the clip's start.
-//! The motion rotates about the vertical (+Y) through p₀ by the *yaw*, and then translates by the parts of p − p₀ that are
-//! [`Taken`]. The yaw is the twist of q · q₀⁻¹ about the vertical: the rotation that remains after its tilt is undone along the
-//! shortest arc. Everything else stays in the pose, so that motion · pose in place = pose, up to rounding. Where a rotation
-//! both turns and tilts between two keys, this holds within [`YAW_BOUND`], because the rotation is split into short linear
-//! segments.
+//! Let p and q be the root bone's position and rotation in model space at a given time. Let p₀ and q₀ be the same at the clip's
+//! start. The extracted motion first rotates by the *yaw* about the vertical axis (+Y) through p₀. It then translates by the
+//! components of p − p₀ that [`Taken`] selects.
 //!
-//! Bones above the root must not move in the clip. They may rotate, mirror and scale it (exporters' axes and units). If the yaw
-//! is taken, their scale must be uniform and must not mirror.
+//! The yaw is the twist of q · q₀⁻¹ about the vertical: the rotation that remains after its tilt is undone along the shortest
+//! arc. Everything else stays in the pose. Thus motion · pose in place = pose, up to rounding. If a rotation both turns and tilts
+//! between two keys, this holds within [`YAW_BOUND`], because the rotation is split into short linear segments.
+//!
+//! The ancestors of the root bone must not move in the clip. They may rotate, mirror and scale it (for exporters' axes and
+//! units). If the yaw is taken, their scale must be uniform and must not mirror.
 
 use crate::InputError;
 use crate::animation::instance::Instance;
@@ -36,61 +37,64 @@ mod rigid;
 
 use rigid::Rigid;
 
-/// Largest angle, in radians, between motion · pose in place and the pose. It applies between keys of a rotation whose yaw is
-/// taken, for roots that tilt by less than 60°.
+/// Largest angle, in radians, between motion · pose in place and the original pose. It applies between keys of a rotation whose
+/// yaw is taken, for roots that tilt by less than 60°.
 ///
 /// Between linear keys that rotate about the vertical only, the angle is 0. Otherwise a segment is split into pieces of at most
-/// [`PIECE`], or [`SPLINE_PIECES`] for a spline, in which yaw and tilt advance at constant speed. The error is then an eighth
-/// of the square of a piece times the curvature of the yaw, which tan(tilt) bounds. Measured on random keys: 7e-5 between
-/// linear keys, 2.6e-4 on splines with random tangents.
+/// [`PIECE`], or into [`SPLINE_PIECES`] for a spline. In each piece, yaw and tilt advance at constant speed. The error is an
+/// eighth of the square of a piece times the curvature of the yaw, which tan(tilt) bounds. Measured on random keys, it is 7e-5
+/// between linear keys and 2.6e-4 on splines with random tangents.
 pub const YAW_BOUND: f64 = 5e-4;
 
-/// Largest angle of a piece, in radians: 1°.
+/// Largest rotation, in radians, of one linear piece of a segment: 1°.
 pub const PIECE: f64 = std::f64::consts::PI / 180.0;
 
-/// Number of pieces of a segment of a cubic spline.
+/// Number of linear pieces that replace one segment of a cubic spline.
 pub const SPLINE_PIECES: u32 = 128;
 
-/// The parts of a root bone's motion that are taken out.
+/// Selects the components of a root bone's motion that are taken out of a clip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Taken {
-    /// Translation along x and z.
+    /// Take the translation along x and z.
     pub horizontal: bool,
-    /// Translation along y, for climbing and for jumps that physics should handle.
+    /// Take the translation along y: for climbing, and for jumps that physics should handle.
     pub vertical: bool,
-    /// Rotation about y; only together with `horizontal`.
+    /// Take the rotation about y; allowed only together with `horizontal`.
     pub yaw: bool,
 }
 
 impl Default for Taken {
-    /// Horizontal motion only.
+    /// Takes horizontal motion only.
     fn default() -> Self {
         Self { horizontal: true, vertical: false, yaw: false }
     }
 }
 
-/// The motion that was taken out of a clip.
+/// Root motion that was taken out of a clip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RootMotion {
     duration: f64,
     // Translation since the clip's start, in metres of model space.
     path: Keys,
-    // Key times and yaw in radians since the clip's start, with linear interpolation.
+    // Key times in seconds, and yaw in radians since the clip's start. Values between keys are interpolated linearly.
     turn_times: Vec<f32>,
     turns: Vec<f64>,
     // Position of the bone at the clip's start: the pivot of the yaw.
     pivot: [f64; 3],
-    // The motion from start to end.
+    // Motion from the clip's start to its end: one whole loop.
     whole: Rigid,
 }
 
 impl RootMotion {
-    /// Takes the motion of `bone` out of a clip. Returns the clip in place, and the motion.
+    /// Takes the selected motion of `bone` out of a clip. Returns the clip in place, and the motion.
     ///
     /// # Errors
-    /// [`InputError`] for a clip of another skeleton, for a bone that it does not have, if nothing is taken, for a yaw without
-    /// horizontal motion, and for bones above that move, that have no extent, or that mirror or scale unevenly while the yaw is
-    /// taken.
+    /// [`InputError`] in these cases:
+    ///
+    /// - the clip is of another skeleton, or the skeleton has no such bone;
+    /// - `taken` selects nothing, or the yaw without horizontal motion;
+    /// - an ancestor of the bone moves or has no extent;
+    /// - the yaw is taken and an ancestor mirrors or scales unevenly.
     pub fn extract(
         skeleton: &Skeleton,
         clip: &Clip,
@@ -100,11 +104,12 @@ impl RootMotion {
         extract::extract(skeleton, clip, bone, taken)
     }
 
-    /// Motion of an instance between two times: a rotation about +Y and a translation in metres, in the model's space at
-    /// `from`. Times are in seconds since the instance's start, as in `KeyframeCursorJob::set`; `to` may be before `from`.
+    /// Motion of an instance between two times: a rotation about +Y and a translation in metres, in the model space of the
+    /// instance at `from`. Times are in seconds since the instance's start, as in `KeyframeCursorJob::set`. `to` may be before
+    /// `from`.
     ///
     /// # Errors
-    /// [`InputError`] for times, starts and rates that are not finite.
+    /// [`InputError`] if a time is not finite, or if the instance's start or rate is out of range ([`Instance::validate`]).
     pub fn delta(&self, instance: &Instance, from: f64, to: f64) -> Result<Transform, InputError> {
         check_times(from, to)?;
         instance.validate(usize::MAX)?;
@@ -149,13 +154,13 @@ fn check_times(from: f64, to: f64) -> Result<(), InputError> {
     InputError::check_finite("to", to)
 }
 
-/// As [`RootMotion::delta`], for one layer of a whole crowd and without allocation. For blended clips, blend their deltas by
-/// the same weights ([`blend`](crate::animation::sample::reference::blend)). `motions` has one entry per clip of the set; an
-/// instance whose clip has `None` does not move.
+/// Computes [`RootMotion::delta`] for all instances of one layer of a crowd, without allocation. `motions` has one entry per clip
+/// of the set. An instance whose clip has `None` does not move. For blended clips, blend the deltas by the clips' weights
+/// ([`blend`](crate::animation::sample::reference::blend)).
 ///
 /// # Errors
-/// As [`RootMotion::delta`], and [`InputError`] for instances of a clip that does not exist and for a number of deltas that is
-/// not one per instance.
+/// [`InputError`] for the errors of [`RootMotion::delta`], if an instance's clip does not exist, and if `deltas` does not have
+/// one entry per instance.
 pub fn deltas(
     motions: &[Option<RootMotion>],
     instances: &[Instance],

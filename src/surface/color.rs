@@ -1,4 +1,4 @@
-//! Colour textures with mip levels.
+//! Colour textures with mip levels, on the device.
 
 use crate::asset::material::{Filter, Sampling, Wrapping};
 use crate::gpu::{Gpu, GpuError};
@@ -6,21 +6,21 @@ use crate::srgb::linear;
 use crate::surface::map::Address;
 use crate::surface::mips::Mips;
 
-/// A colour texture with its sampler.
+/// A colour texture on the device, with its sampler.
 #[derive(Debug, Clone)]
 pub struct ColorTexture {
-    /// RGBA with all mip levels.
+    /// RGBA texture with all mip levels.
     pub texture: wgpu::Texture,
-    /// A trilinear sampler that wraps or clamps.
+    /// Trilinear sampler, which wraps or clamps outside the image.
     pub sampler: wgpu::Sampler,
 }
 
 impl ColorTexture {
-    /// Uploads mip levels as 8-bit texels. `mips` selects the format: sRGB for colours, linear for data. `address` applies
-    /// outside of the image.
+    /// Uploads mip levels as 8-bit texels. `mips` determines the format: sRGB for colours, linear for data. `address` determines
+    /// whether the sampler wraps or clamps outside the image.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, mips: &Mips, address: Address) -> Result<Self, GpuError> {
         let format = match mips.is_srgb {
             true => wgpu::TextureFormat::Rgba8UnormSrgb,
@@ -29,11 +29,12 @@ impl ColorTexture {
         upload(gpu, mips, address, format, |level| level.as_raw().clone())
     }
 
-    /// Uploads mip levels as linear half floats, for pictures that are compared across drivers. It takes twice the memory, but
-    /// does not depend on the driver's sRGB decoding. `address` applies outside of the image.
+    /// Uploads mip levels as linear 16-bit floats, for pictures that are compared across drivers. This format takes twice the
+    /// memory, but does not depend on the driver's sRGB decoding. `address` determines whether the sampler wraps or clamps
+    /// outside the image.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn linear(gpu: &Gpu, mips: &Mips, address: Address) -> Result<Self, GpuError> {
         let value = |channel: usize, byte: u8| match mips.is_srgb && channel < 3 {
             true => linear(byte),
@@ -50,10 +51,10 @@ impl ColorTexture {
     }
 }
 
-/// Creates a sampler.
+/// Creates a wgpu sampler with the wrapping and filters of a material's texture.
 ///
 /// # Errors
-/// [`GpuError`].
+/// [`GpuError`] for errors of the device.
 pub(crate) fn sampler_of(gpu: &Gpu, sampling: &Sampling) -> Result<wgpu::Sampler, GpuError> {
     let address = |wrapping: Wrapping| match wrapping {
         Wrapping::Repeat => wgpu::AddressMode::Repeat,

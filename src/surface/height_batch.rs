@@ -1,25 +1,25 @@
-//! A batch of height maps on the device.
+//! Batches of height maps on the device.
 
 use super::map::HeightMap;
 use crate::gpu::{Buffer, Gpu};
 use crate::{Error, InputError};
 
-/// Height maps of one size on the device, one after another.
+/// Height maps of equal size on the device, one map after another.
 #[derive(Debug, Clone)]
 pub struct HeightMapBatch {
-    /// Heights, row by row, map by map.
+    /// Heights of all texels, 0 to 1, map by map and row by row.
     pub heights: Buffer<f32>,
-    /// Texels of each map along x and y.
+    /// Number of texels of each map along x and y.
     pub size: [u32; 2],
-    /// Number of maps.
+    /// Number of height maps.
     pub count: u32,
 }
 
 impl HeightMapBatch {
-    /// Uploads maps of one size.
+    /// Uploads height maps of equal size.
     ///
     /// # Errors
-    /// [`InputError`] for an empty list or different sizes; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`] if `maps` is empty or the maps differ in size; [`GpuError`](crate::gpu::GpuError) for errors of the device.
     pub fn new(gpu: &Gpu, maps: &[HeightMap]) -> Result<Self, Error> {
         let size_of = |map: &HeightMap| [map.width(), map.height()];
         let Some(size) = maps.first().map(size_of) else {
@@ -41,6 +41,6 @@ impl HeightMapBatch {
     }
 }
 
-/// Advice in errors about maps larger than a binding.
+/// Advice that is added to errors about maps that exceed the device's binding size.
 pub(crate) const REMEDY: &str =
     "use smaller or fewer height maps, or compute on the CPU with the functions in the `reference` modules";

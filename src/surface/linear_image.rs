@@ -1,19 +1,19 @@
-//! Images in linear light, for averaging before they are encoded as sRGB.
+//! Images in linear light, which can be averaged before they are encoded as sRGB.
 
 use crate::srgb;
 
-/// Linear red, green and blue, row by row from the top left.
+/// Image with linear red, green and blue, row by row from the top left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearImage {
-    /// Pixels along x and y.
+    /// Number of pixels along x and y.
     pub size: [u32; 2],
-    /// `size[0] * size[1]` pixels.
+    /// All pixels, `size[0] * size[1]`, each with linear red, green and blue.
     pub pixels: Vec<[f32; 3]>,
 }
 
 impl LinearImage {
-    /// The image reduced by `factor`: each pixel is the mean of `factor` × `factor` pixels. A remainder at the edges is cut
-    /// off.
+    /// Returns the image reduced by `factor`: each pixel is the mean of `factor` × `factor` pixels. Incomplete blocks at the
+    /// right and bottom edges are cut off.
     pub fn reduced(&self, factor: u32) -> Self {
         let size = self.size.map(|edge| edge / factor);
         let fraction = 1.0 / (factor * factor) as f32;
@@ -29,7 +29,7 @@ impl LinearImage {
         Self { size, pixels: pixels.collect() }
     }
 
-    /// The image encoded as opaque sRGB.
+    /// Encodes the image as opaque 8-bit sRGB.
     pub fn encoded(&self) -> image::RgbaImage {
         let [width, height] = self.size;
         image::RgbaImage::from_fn(width, height, |x, y| {

@@ -1,27 +1,27 @@
-//! Height maps, the input of all methods.
+//! Height maps: the input of all relief methods.
 
 use std::path::Path;
 
 use crate::shared::surface::ray;
 use crate::{Error, InputError};
 
-/// Longest edge of a map in texels: WebGPU's default limit for a texture.
+/// Largest edge length of a height map in texels: WebGPU's default limit for a texture.
 pub const MAP_EDGE: u32 = 8192;
 
-/// Address mode: what lies beyond the edge of a map.
+/// Address mode: how a height map continues beyond its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 #[repr(u32)]
 pub enum Address {
-    /// The map repeats.
+    /// The map repeats in both directions.
     #[default]
     Wrap = ray::SURFACE_WRAP,
-    /// The texels at the edge continue forever.
+    /// The texels at the edge are repeated without end.
     Clamp = ray::SURFACE_CLAMP,
 }
 
 impl Address {
-    /// Name in options and reports.
+    /// Name of the address mode in options and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Wrap => "wrap",
@@ -29,15 +29,15 @@ impl Address {
         }
     }
 
-    /// Value in the shaders.
+    /// Number of the address mode in the shaders.
     #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         self as u32
     }
 }
 
-/// Heights of a tile, row by row from the top left, finite, 0 (lowest) to 1. The center of texel (i, j) is at uv ((i + ½) /
-/// width, (j + ½) / height). Between centers, heights are interpolated bilinearly.
+/// Height map of one tile: heights from 0 (lowest) to 1 (highest), row by row from the top left. The center of texel (i, j) is at
+/// uv ((i + ½) / width, (j + ½) / height). Between texel centers, heights are interpolated bilinearly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightMap {
     width: u32,
@@ -46,10 +46,11 @@ pub struct HeightMap {
 }
 
 impl HeightMap {
-    /// Builds a map of `width` × `height` texels.
+    /// Builds a height map of `width` × `height` texels. `heights` has the rows from top to bottom.
     ///
     /// # Errors
-    /// [`InputError`] for an edge outside 1 to [`MAP_EDGE`], for a wrong number of heights, and for a height outside 0..=1.
+    /// [`InputError`] for an edge outside 1 to [`MAP_EDGE`] texels, for a wrong number of heights, and for a height outside
+    /// 0..=1.
     pub fn new(width: u32, height: u32, heights: Vec<f32>) -> Result<Self, InputError> {
         for (field, edge) in [("heights.width", width), ("heights.height", height)] {
             if !(1..=MAP_EDGE).contains(&edge) {
@@ -65,26 +66,27 @@ impl HeightMap {
         Ok(Self { width, height, heights })
     }
 
-    /// Reads the brightness of an image file as heights, black as 0 and white as 1, in the file's full bit depth.
+    /// Reads a height map from the brightness of an image file, with black as 0 and white as 1. The file's full bit depth is
+    /// used.
     ///
     /// # Errors
-    /// [`Error::File`] when the file cannot be read, [`InputError`] for its size.
+    /// [`Error::File`] if the file cannot be read, [`InputError`] if the image has an unsupported size.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         Self::of_brightness(open(path)?).map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
-    /// Takes the brightness of an image as heights, black as 0 and white as 1, in its full bit depth.
+    /// Builds a height map from the brightness of an image, with black as 0 and white as 1. The image's full bit depth is used.
     ///
     /// # Errors
-    /// [`InputError`] for its size.
+    /// [`InputError`] if an edge of the image is outside 1 to [`MAP_EDGE`] texels.
     pub fn of_brightness(image: image::DynamicImage) -> Result<Self, InputError> {
         Self::of_samples(image.width(), image.height(), image.into_luma16().into_raw())
     }
 
-    /// Reads the alpha channel of an image file as heights. Also returns the image.
+    /// Reads a height map from the alpha channel of an image file. Also returns the decoded image.
     ///
     /// # Errors
-    /// As [`HeightMap::from_file`], and [`Error::File`] for an image without alpha.
+    /// [`Error::File`] if the file cannot be read or has no alpha channel, [`InputError`] if the image has an unsupported size.
     pub fn from_alpha(path: &Path) -> Result<(Self, image::DynamicImage), Error> {
         let image = open(path)?;
         if !image.color().has_alpha() {
@@ -95,10 +97,10 @@ impl HeightMap {
         Ok((map, image))
     }
 
-    /// Takes the alpha channel of an image as heights, in its full bit depth.
+    /// Builds a height map from the alpha channel of an image. The image's full bit depth is used.
     ///
     /// # Errors
-    /// [`InputError`] for an image without alpha, and for its size.
+    /// [`InputError`] if the image has no alpha channel, or if an edge is outside 1 to [`MAP_EDGE`] texels.
     pub fn of_alpha(image: &image::DynamicImage) -> Result<Self, InputError> {
         if !image.color().has_alpha() {
             return Err(InputError::new("heights.image", format!("{:?}", image.color()), NO_ALPHA));
@@ -116,18 +118,18 @@ impl HeightMap {
         self.width
     }
 
-    /// Number of rows.
+    /// Number of rows of texels.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Heights, row by row.
+    /// All heights, 0 to 1, row by row from the top left.
     pub fn heights(&self) -> &[f32] {
         &self.heights
     }
 
-    /// Next mip level: both edges halved, rounded down but at least 1. Each texel is the mean of the four texels that it
-    /// covers.
+    /// Returns the next mip level. Both edges are halved, rounded down but at least 1. Each texel is the mean of four texels of
+    /// this level.
     #[cfg(feature = "gpu")]
     pub(crate) fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
@@ -141,7 +143,7 @@ impl HeightMap {
         Self { width, height, heights: heights.collect() }
     }
 
-    /// Height of a texel; beyond the edge, `address` decides.
+    /// Height of the texel in column `x` and row `y`. Beyond the edges, `address` tells how the map continues.
     pub fn texel(&self, x: i32, y: i32, address: Address) -> f32 {
         let at = |index: i32, edge: u32| match address {
             Address::Wrap => index.rem_euclid(edge as i32),
@@ -153,19 +155,19 @@ impl HeightMap {
 
 const NO_ALPHA: &str = "has no alpha channel to take heights from";
 
-/// Reads an image file after checking its size: no edge may be longer than [`MAP_EDGE`].
+/// Reads an image file. The size is checked first: no edge may be longer than [`MAP_EDGE`].
 ///
 /// # Errors
-/// [`Error::File`] when it cannot be read.
+/// [`Error::File`] if the file cannot be read or decoded.
 pub fn open(path: &Path) -> Result<image::DynamicImage, Error> {
     let file = std::fs::File::open(path).map_err(|error| Error::file(path, error))?;
     decode(std::io::BufReader::new(file)).map_err(|error| Error::file(path, error))
 }
 
-/// Decodes an image after checking its size: no edge may be longer than [`MAP_EDGE`].
+/// Decodes an image from bytes. The size is checked first: no edge may be longer than [`MAP_EDGE`].
 ///
 /// # Errors
-/// Decoding errors of the crate `image`.
+/// Errors of the crate `image`: invalid data, or an edge that is too long.
 pub fn decode(
     bytes: impl std::io::BufRead + std::io::Seek,
 ) -> Result<image::DynamicImage, image::ImageError> {

@@ -1,51 +1,51 @@
-//! Parameters of a relief material: depth, plane, light, and softness of shadows.
+//! Parameters of a relief material: depth, reference plane, light, and softness of shadows.
 
 use crate::InputError;
 use crate::surface::relief::{MAX_SCALE, MAX_STEPS};
 
-/// Self-shadowing of the surface.
+/// How a relief casts shadows onto itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ReliefShadow {
     /// No self-shadowing.
     #[default]
     None,
-    /// Hard shadows: a ray from the light, traced with the same method as the eye's ray.
+    /// Hard shadows: a ray from the light is traced with the same method as the eye's ray.
     Hard,
-    /// Penumbras, from height samples along the way to the light.
+    /// Soft shadows with penumbras, from height samples along the path to the light.
     Soft,
 }
 
-/// Direction that the green channel of a normal map points to.
+/// Direction in the image that the green channel of a normal map points to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Green {
-    /// Up the image, against v, as in glTF and OpenGL.
+    /// Up the image, opposite to v, as in glTF and OpenGL.
     #[default]
     Up,
     /// Down the image, along v, as in Direct3D.
     Down,
 }
 
-/// Parameters of a relief, besides its maps, that may change without a new pipeline. Options such as shadows and silhouettes
-/// are compiled into the pipeline (`surface::ReliefOptions`).
+/// Parameters of a relief apart from its maps. They may change without a new pipeline. Options such as shadows and silhouettes
+/// are compiled into the pipeline instead (`surface::ReliefOptions`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReliefMaterial {
-    /// Depth of the relief in uv units, 0 to [`MAX_SCALE`].
+    /// Depth of the relief in uv units (1 = one tile), 0 to [`MAX_SCALE`].
     pub scale: f32,
-    /// Height of the polygon within the relief, 0 (bottom) to 1 (top).
+    /// Height of the polygon within the relief, from 0 (bottom) to 1 (top).
     ///
-    /// **Decided**: 1 by default, for every method. B's text has the polygon at the top (3.1.2), its table 4.4 at the bottom,
-    /// and its bias of parallax in the middle (3.1.1), which is ½ here.
+    /// **Decided**: 1 by default, for every method. Thesis B puts the polygon at the top in its text (3.1.2) and at the bottom in
+    /// its table 4.4. Its bias of parallax (3.1.1) puts the polygon in the middle, which is ½ here.
     pub plane: f32,
     /// Unit vector towards the light, in world space.
     pub light: [f32; 3],
-    /// Light that shadowed points still receive, 0 to 1.
+    /// Fraction of the light that shadowed points still receive, 0 to 1.
     pub ambient: f32,
-    /// Number of height samples of a soft shadow on the way to the light, 1 to 1024.
+    /// Number of height samples between a point and the light for a soft shadow, 1 to 1024.
     pub shadow_steps: u32,
-    /// Ratio at which a soft shadow is full, > 0: the height of the surface above the way to the light, divided by the
-    /// height that the way has gained since the shaded point.
+    /// Ratio at which a soft shadow becomes fully dark, > 0. The ratio compares a sample on the path to the light with the shaded
+    /// point. It is the height of the surface above the path, divided by the height that the path has gained.
     pub softness: f32,
 }
 
@@ -63,10 +63,10 @@ impl Default for ReliefMaterial {
 }
 
 impl ReliefMaterial {
-    /// Refuses values out of bounds.
+    /// Checks that all values are within their bounds and that `light` is a unit vector.
     ///
     /// # Errors
-    /// [`InputError`].
+    /// [`InputError`] that names the first invalid field.
     pub fn validate(&self) -> Result<(), InputError> {
         InputError::check_within("scale", self.scale, 0.0..=MAX_SCALE)?;
         InputError::check_within("plane", self.plane, 0.0..=1.0)?;

@@ -1,35 +1,35 @@
-//! Meshes that carry a relief: vertices with tangent frames, and triangles.
+//! Meshes for relief mapping: vertices with tangent frames, and triangles.
 
 use crate::InputError;
 
-/// A vertex of a mesh that carries a relief.
+/// A vertex of a mesh for relief mapping.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct SurfaceVertex {
-    /// Position in world units.
+    /// Position of the vertex in world units.
     pub position: [f32; 3],
-    /// Unit normal.
+    /// Unit normal of the surface at the vertex.
     pub normal: [f32; 3],
-    /// Unit tangent along u, and a sign ±1. The bitangent, along v, is the sign times normal × tangent. glTF's bitangent points
-    /// against v, up the image, so that glTF's fourth component has the opposite sign.
+    /// Unit tangent along u in x, y and z, and a sign ±1 in w. The bitangent points along v and is w · cross(normal, tangent). In
+    /// glTF, the bitangent points opposite to v, up the image, so glTF's w has the opposite sign.
     pub tangent: [f32; 4],
-    /// Texture coordinates; a range of 1 is one tile of the relief.
+    /// Texture coordinates. A range of 1 is one tile of the relief.
     pub uv: [f32; 2],
 }
 
-/// A mesh that carries relief.
+/// A triangle mesh for relief mapping.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceMesh {
-    /// The vertices that `indices` name.
+    /// Vertices, referred to by `indices`.
     pub vertices: Vec<SurfaceVertex>,
-    /// Three indices per triangle.
+    /// Three vertex indices per triangle.
     pub indices: Vec<u32>,
 }
 
 impl SurfaceMesh {
-    /// A square in the plane z = 0 with an edge of one world unit, centered at the origin and facing +Z. u runs along +X and v
-    /// along −Y, both from 0 to `tiles`.
+    /// Creates a square in the plane z = 0. Its edges are one world unit long; it is centered at the origin and faces +Z. u runs
+    /// along +X and v along −Y, both from 0 to `tiles`.
     pub fn square(tiles: f32) -> Self {
         let vertex = |x: f32, y: f32| SurfaceVertex {
             position: [x - 0.5, 0.5 - y, 0.0],
@@ -41,10 +41,10 @@ impl SurfaceMesh {
         Self { vertices, indices: vec![0, 2, 1, 1, 2, 3] }
     }
 
-    /// Refuses indices of vertices that do not exist.
+    /// Checks that all indices refer to existing vertices and that their number is a multiple of 3.
     ///
     /// # Errors
-    /// [`InputError`].
+    /// [`InputError`] that names the first invalid field or index.
     pub fn validate(&self) -> Result<(), InputError> {
         crate::asset::indices::check_triangles("indices", &self.indices, self.vertices.len())
     }

@@ -4,22 +4,22 @@ use image::RgbaImage;
 
 use crate::srgb;
 
-/// An image with all its mip levels. Each texel is the mean of the texels that it covers.
+/// An image with all its mip levels. Each texel of a level is the mean of four texels of the level before.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mips {
-    /// Levels, from the image itself to a single texel.
+    /// Mip levels, from the image itself down to a single texel.
     pub levels: Vec<RgbaImage>,
-    /// Whether red, green and blue are sRGB. If so, they were averaged in linear light.
+    /// Whether red, green and blue are sRGB values. If true, mip levels are averaged in linear light.
     pub is_srgb: bool,
 }
 
 impl Mips {
-    /// Mip levels of an sRGB image.
+    /// Computes the mip levels of an sRGB image, averaged in linear light.
     pub fn of_color(image: RgbaImage) -> Self {
         Self::new(image, true)
     }
 
-    /// Mip levels of an image whose channels are data, not colours.
+    /// Computes the mip levels of an image whose channels are data, not colours.
     pub fn of_data(image: RgbaImage) -> Self {
         Self::new(image, false)
     }
@@ -34,7 +34,7 @@ impl Mips {
     }
 }
 
-/// Next level; `None` after a single texel.
+/// Returns the next mip level; `None` if `image` is a single texel.
 fn halved(image: &RgbaImage, is_srgb: bool, light: &[f32]) -> Option<RgbaImage> {
     let (width, height) = image.dimensions();
     if width * height <= 1 {

@@ -1,5 +1,5 @@
-//! Surface mapping: ray-height methods with a common result, the maps that accelerate them, and tangent frames
-//! (B sections 3.1 and 4.2).
+//! Surface mapping: methods that find where a ray meets a height field, the maps that accelerate them, and tangent frames (thesis
+//! B, sections 3.1 and 4.2).
 
 #[cfg(feature = "gpu")]
 #[doc(hidden)]

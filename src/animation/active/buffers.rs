@@ -1,4 +1,4 @@
-//! The lists of active bones and instances on the device.
+//! GPU buffers that list the active bones and instances of a frame.
 
 use crate::animation::crowd::Crowd;
 use crate::animation::model_matrices::ExclusiveConsumer;
@@ -8,37 +8,37 @@ use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
 use crate::shared::animation::compact::WIDTH;
 use crate::{Error, InputError};
 
-/// List of (instance, bone) pairs to sample, in a buffer that kernels may fill.
+/// GPU list of the (instance, bone) pairs that a frame samples. The host or a kernel fills it.
 #[derive(Debug, Clone)]
 pub struct ActivePairs {
-    /// Pair index `instance · bones + bone`, with the flag [`PAIR_AHEAD`](crate::animation::active::PAIR_AHEAD) if the bone is
-    /// sampled ahead. Pairs that are not listed are skipped.
+    /// Pair index `instance · bones + bone` of each listed pair. The flag [`PAIR_AHEAD`](crate::animation::active::PAIR_AHEAD) is
+    /// set if the bone is sampled ahead of the frame's time. Pairs that are not listed are skipped.
     pub pairs: Buffer<u32>,
-    /// Indirect dispatch arguments (workgroups of 64 along x, y and z), followed by the number of pairs.
+    /// Indirect dispatch arguments: workgroups of 64 threads along x, y and z, then the number of listed pairs.
     pub dispatched: Buffer<u32>,
     consumer: ExclusiveConsumer,
 }
 
 impl ActivePairs {
-    /// Allocates an empty list with room for all pairs of a crowd.
+    /// Allocates an empty list with capacity for all pairs of a crowd.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, crowd: &Crowd) -> Result<Self, GpuError> {
         let dispatched = Buffer::from_slice(gpu, "dispatched", &[0, 1, 1, 0])?;
         let consumer = crowd.model_matrices.consumer().clone();
         Ok(Self { pairs: Buffer::new(gpu, "pairs", crowd.pairs())?, dispatched, consumer })
     }
 
-    /// Refuses a crowd other than the one for which the list was made.
+    /// Returns an error for any crowd other than the one that this list was made for.
     pub(crate) fn check_crowd(&self, crowd: &Crowd) -> Result<(), InputError> {
         crowd.model_matrices.consumer().check_same(&self.consumer)
     }
 
-    /// Uploads the list from the host.
+    /// Uploads a list of pairs from the host, and its dispatch arguments.
     ///
     /// # Errors
-    /// [`GpuError`], also for more pairs than the crowd has.
+    /// [`GpuError`] for errors of the device, and for more pairs than the crowd has.
     pub fn write(&self, gpu: &Gpu, pairs: &[u32]) -> Result<(), GpuError> {
         self.pairs.write(gpu, pairs)?;
         let groups = (pairs.len() as u32).div_ceil(WIDTH);
@@ -47,24 +47,28 @@ impl ActivePairs {
     }
 }
 
-/// Work lists of one frame for a crowd. The caller may read and bind all buffers.
+/// Work lists of one frame of a crowd: active bones, active instances and indirect dispatch arguments. The caller may read and
+/// bind all buffers.
 #[derive(Debug, Clone)]
 pub struct Active {
-    /// Three bit masks, each with one bit per slot and [`Order::words`] words per instance. First: the sampled bones. Second:
-    /// the bones among them that are sampled at the look-ahead time, for later frames. A gate or the caller writes both. Third ([`Active::updated_words`]): the
-    /// bones whose model matrices the frame updates.
-    pub bits: Buffer<u32>,
-    /// Bones whose model matrices this or an earlier frame updated and that skinning has not followed yet.
-    pub updated_bones: UpdatedBones,
-    /// The pairs to be sampled.
-    pub pairs: ActivePairs,
-    /// Indices of the instances that have an active bone.
-    pub instances: Buffer<u32>,
-    /// Arguments of indirect dispatches, in three groups:
+    /// Three bit masks, one after another. Each has one bit per slot (position of a bone in the [`Order`]), in [`Order::words`]
+    /// words per instance. A gate or the caller writes the first two masks. In order, the masks hold:
     ///
-    /// - workgroups of 64 along x, y and z for one thread per listed instance, then the number of these instances;
-    /// - for each level of chains, workgroups for one thread per chain of each instance, then the level's number of chains;
-    /// - workgroups for one thread per cursor of each instance, then the number of cursors per instance.
+    /// - the sampled bones;
+    /// - the sampled bones that are sampled ahead, at the look-ahead time, so that they stay valid for later frames;
+    /// - the bones whose model matrices the frame updates ([`Active::updated_words`]).
+    pub bits: Buffer<u32>,
+    /// Bones whose model matrices were updated in this or an earlier frame, and whose vertices have not been skinned since.
+    pub updated_bones: UpdatedBones,
+    /// The (instance, bone) pairs that the frame samples.
+    pub pairs: ActivePairs,
+    /// Indices of the instances with at least one active bone.
+    pub instances: Buffer<u32>,
+    /// Arguments of indirect dispatches for active instances, in three groups:
+    ///
+    /// - workgroups of 64 threads along x, y and z, for one thread per listed instance; then the number of these instances;
+    /// - for each level of bone chains, workgroups for one thread per chain of each instance; then the number of chains;
+    /// - workgroups for one thread per keyframe cursor of each instance; then the number of cursors per instance.
     pub dispatches: Buffer<[u32; 4]>,
     pub(crate) slots: Buffer<crate::shared::animation::order::Slot>,
     pub(crate) counts: Buffer<u32>,
@@ -72,10 +76,10 @@ pub struct Active {
 }
 
 impl Active {
-    /// Allocates lists for a crowd of a skeleton. Nothing is active at first.
+    /// Allocates the lists for a crowd. Nothing is active at first.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
+    /// [`InputError`] for a crowd of another skeleton; [`GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, order: &Order, crowd: &Crowd) -> Result<Self, Error> {
         InputError::check_same("crowd.bones", crowd.bones, order.slots.len(), "as the skeleton's")?;
         let instances = crowd.len();
@@ -96,8 +100,8 @@ impl Active {
         })
     }
 
-    /// Range of words in [`Active::bits`] with the bones whose model matrices the frame updates: active bones and all their
-    /// descendants.
+    /// Word range of the updated bones in [`Active::bits`]: the active bones and all their descendants. The frame updates their
+    /// model matrices.
     pub fn updated_words(&self) -> std::ops::Range<usize> {
         let words = self.instances.len() * self.words as usize;
         2 * words..3 * words

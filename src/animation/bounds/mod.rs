@@ -1,16 +1,17 @@
 //! Axis-aligned bounding boxes of animated instances, in model space, for culling.
 //!
-//! Everything that a bone moves lies in a sphere around the bone's origin. The sphere's *radius* is given in metres, in the
-//! bone's own space. The bone's matrix turns the sphere into an ellipsoid. Along an axis, the ellipsoid's extent is the radius
-//! times the length of the matrix row of that axis, whatever the scales of the ancestors. (The length of the longest column
-//! would be wrong, because uneven scales of a parent shear its children.) The result is the box around the ellipsoids of all
-//! bones. It also holds for points that several bones share with weights from 0 to 1: such points lie between their positions
-//! under each bone alone.
+//! A sphere around each bone's origin contains everything that the bone moves. The sphere's *radius* is in metres of the bone's
+//! own space. The bone's matrix turns the sphere into an ellipsoid. The ellipsoid's extent along an axis is the radius times the
+//! length of the matrix row of that axis. This holds for all scales of the ancestors. (The length of the longest column would be
+//! wrong, because uneven scales of a parent shear its children.)
 //!
-//! The caller provides one radius per bone: the distance of the farthest vertex that the bone moves, `|inverse_bind · v|`.
-//! Without a mesh, use the bones' own lengths ([`bone_radii`]).
+//! The result is the box around the ellipsoids of all bones. The box also contains points that several bones share with weights
+//! from 0 to 1. Such points lie between the positions that each bone alone would give them.
 //!
-//! A box is rounded outward. On every device it contains the exact box of the matrices' `f32` values, as long as values stay
+//! The caller provides one radius per bone: the distance from the bone to the farthest vertex that the bone moves, `|inverse_bind
+//! · v|`. Without a mesh, use the bones' own lengths ([`bone_radii`]).
+//!
+//! Boxes are rounded outward. On every device, a box contains the exact box of the matrices' `f32` values, as long as values stay
 //! below 2⁶³. `docs/rounding-bounds.md` has the derivation.
 
 use crate::InputError;
@@ -23,8 +24,10 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::BoundsPass;
 
-/// Largest allowed difference between a side and the reference, on any device, relative to the largest side. The sum is 14ε and
-/// 6ε of the extent, 4ε of the center and 2ε of the side, from either: 52ε < 4e-6.
+/// Largest allowed difference between a side of a box and the CPU reference, relative to the largest side; on any device.
+///
+/// Each of the two results may be off by 14ε + 6ε of the extent, 4ε of the center and 2ε of the side. For both this is 52ε <
+/// 4e-6.
 pub const BOUNDS_BOUND: f32 = 4e-6;
 
 /// An axis-aligned box in model space.
@@ -32,13 +35,13 @@ pub const BOUNDS_BOUND: f32 = 4e-6;
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct MotionBounds {
-    /// The smallest x, y, z in metres, and 0.
+    /// Smallest x, y and z in metres; the fourth component is 0.
     pub low: [f32; 4],
-    /// The largest x, y, z in metres, and 0.
+    /// Largest x, y and z in metres; the fourth component is 0.
     pub high: [f32; 4],
 }
 
-/// Radius of each bone for a skeleton without a mesh: the bone's length ([`Skeleton::lengths`]).
+/// Radius of each bone, in metres, for a skeleton without a mesh: the bone's length ([`Skeleton::lengths`]).
 pub fn bone_radii(skeleton: &Skeleton) -> Vec<f32> {
     // Round up: the conversion to f32 may have made the length smaller.
     let up = |length: f64| {
@@ -47,10 +50,10 @@ pub fn bone_radii(skeleton: &Skeleton) -> Vec<f32> {
     skeleton.lengths().into_iter().map(up).collect()
 }
 
-/// Checks that there are `bones` valid radii.
+/// Checks that `bone_radii` has `bones` entries, and that each entry is a valid radius.
 ///
 /// # Errors
-/// [`InputError`] for a number of radii that is not one per bone, and for radii that are negative or not finite.
+/// [`InputError`] if the number of radii is not `bones`, or if a radius is negative or not finite.
 pub fn check_bone_radii(bone_radii: &[f32], bones: usize) -> Result<(), InputError> {
     InputError::check_len("bone_radii", bone_radii.len(), bones, "a bone")?;
     let is_good = |radius: &f32| (0.0..f32::INFINITY).contains(radius);

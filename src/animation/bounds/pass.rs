@@ -10,26 +10,27 @@ use crate::{Error, InputError};
 
 impl SeenAs<[f32; 4]> for MotionBounds {}
 
-/// Computes the bounds of instances.
+/// Computes the bounding box of each animated instance on the GPU.
 #[derive(Debug, Clone)]
 pub struct BoundsPass {
     kernel: Kernel,
 }
 
 impl BoundsPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the bounds of a crowd's instances from its model matrices. `bone_radii` has one radius per bone, in metres.
+    /// Prepares a job that computes the bounds of a crowd's instances from their model matrices. `bone_radii` has one radius per
+    /// bone, in metres.
     ///
     /// # Errors
-    /// [`InputError`] for radii that do not match the crowd, for 2²⁶ instances or more, and for a buffer with less than one box
-    /// per instance; [`GpuError`].
+    /// [`InputError`] for invalid radii, for a number of radii other than the number of bones, for 2²⁶ instances or more, and if
+    /// `bounds` is too small for one box per instance; [`GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -4,10 +4,10 @@ use crate::animation::bounds::MotionBounds;
 use crate::asset::transform::Affine;
 use crate::shared::animation::bounds::{GROWTH, LEAST, OF_CENTER};
 
-/// Box of each instance, from its model matrices and the radius of each bone.
+/// Bounding box of each instance, from its model matrices and the radius of each bone in metres.
 ///
 /// # Panics
-/// If there are no radii.
+/// If `bone_radii` is empty.
 pub fn bounds(model_matrices: &[Affine], bone_radii: &[f32]) -> Vec<MotionBounds> {
     model_matrices
         .chunks_exact(bone_radii.len())

@@ -1,12 +1,14 @@
-//! Selects which bones to sample when their number per frame is limited. It replaces `gate` in a frame.
+//! Selects the bones to sample when the number of bones per frame is limited. In a frame, this operation takes the place of
+//! `gate`.
 //!
-//! The selected bones are those whose stale transforms are expected to be most visible. Visibility is the motion of points
-//! since the bone was last sampled ([`ExpectationTable`]), weighted by the size of the instance on screen
+//! The operation selects the bones whose stale transforms are expected to be most visible. Visibility is the motion of points
+//! since the bone was last sampled ([`ExpectationTable`]), times a weight for the instance's size on screen
 //! ([`Lod::weight`](super::lod::Lod::weight)).
 //!
-//! Bones are ranked by the logarithm of this product, in sixteenths of an octave, and counted per rank. All bones above some
-//! rank are selected. Bones of that rank are selected in the order of instances and slots until the budget is used up.
-//! Instances that must be sampled in full are sampled whatever the budget; they are charged to it first.
+//! A bone's rank is the logarithm of this product, in sixteenths of an octave. The bones of each rank are counted. All bones
+//! above a threshold rank are selected. Bones of the threshold rank itself are selected in the order of instances and slots,
+//! until the budget is used up. Instances that must be sampled in full are always sampled; their bones are charged to the budget
+//! first.
 //!
 //! [`ExpectationTable`]: super::gate_table::ExpectationTable
 

@@ -9,7 +9,7 @@ use crate::gpu::bindings::animation::budget as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, ParamsJob, Step, Uniform};
 use crate::shared::animation::budget::{BudgetParams, CHOOSE, DECIDE, RANK, SETTLE, SUM, TIES};
 
-/// Decides which bones are sampled within a budget.
+/// Selects the bones to sample on the GPU, within a budget of bones per frame.
 #[derive(Debug, Clone)]
 pub struct BudgetPass {
     stages: [Kernel; 5],
@@ -18,21 +18,22 @@ pub struct BudgetPass {
 }
 
 impl BudgetPass {
-    /// Uploads a table and compiles the pipelines. `bones` is the budget until a job sets another.
+    /// Uploads a table and compiles the pipelines. `bones` is the initial budget in bones per frame; [`BudgetJob::set`] changes
+    /// it.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, table: &ExpectationTable, bones: u32) -> Result<Self, GpuError> {
         let stage = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
         let stages = [stage(RANK)?, stage(CHOOSE)?, stage(DECIDE)?, stage(SUM)?, stage(SETTLE)?];
         Ok(Self { stages, table: TableBuffers::of_expectations(gpu, table)?, bones })
     }
 
-    /// Prepares the decision from a crowd's clip clocks.
+    /// Prepares a job that selects the bones of a crowd. The crowd's clip clocks are its input.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a crowd with other bones or clips than the table, for a table computed for another rotation
-    /// path than the crowd uses, and for lists of active bones of another crowd; [`GpuError`].
+    /// [`crate::InputError`] if the crowd's bones, clips or rotation path differ from the table's, and if `active` belongs to
+    /// another crowd; [`GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -73,14 +74,14 @@ impl BudgetPass {
     }
 }
 
-/// A prepared decision: set the budget, then record.
+/// A prepared selection of bones. In each frame, set the budget, then record.
 pub type BudgetJob = ParamsJob<BudgetParams>;
 
 impl BudgetJob {
-    /// Sets the budget of the next submission: the number of bones that may be sampled.
+    /// Sets the budget for the next submission: the largest number of bones to sample.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn set(&self, gpu: &Gpu, budget: u32) -> Result<(), GpuError> {
         self.uniform.write(gpu, &BudgetParams { budget, ..self.params })
     }

@@ -5,11 +5,11 @@ use crate::animation::gate_table::ExpectationTable;
 use crate::animation::gate_table::sums::{motion_at, motion_between};
 use crate::animation::lod::Lod;
 
-/// Selected bones: one bit per slot of each instance, in [`AnimatedBones::words`](crate::animation::AnimatedBones::words) words
-/// per instance. `sampled` holds, for each slot of each instance, the accumulated motion when it was last sampled.
+/// Returns the selected bones as one bit per slot, in [`AnimatedBones::words`](crate::animation::AnimatedBones::words) words per
+/// instance. `sampled` holds the accumulated motion of each slot of each instance when the slot was last sampled.
 ///
 /// # Panics
-/// If there are fewer levels of detail or sums than clip clocks need.
+/// If `lods` or `sampled` is too short for the clip clocks.
 pub fn budget(
     table: &ExpectationTable,
     budget: u32,
@@ -57,8 +57,8 @@ fn missed_by(table: &ExpectationTable, clip_clock: &ClipClock, slot: usize, last
     motion_between(motion_now(table, clip_clock, slot), last, table.period(clip_clock.clip, slot))
 }
 
-/// Rank from 1 to 768: the logarithm of `missed · weight`, with sixteen ranks per octave. It uses the full product and its own
-/// constants, so that it checks the kernel's two-word arithmetic.
+/// Rank from 1 to 768: the logarithm of `missed · weight`, with sixteen ranks per octave. The function uses a 64-bit product and
+/// its own constants, so that it independently checks the two-word arithmetic of the kernel.
 pub fn rank_of(missed: u32, weight: u32) -> u32 {
     let product = u64::from(missed) * u64::from(weight);
     let Some(lead) = product.checked_ilog2() else { return 1 };

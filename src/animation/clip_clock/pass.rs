@@ -8,25 +8,25 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, ParamsJob, Uniform, Upload};
 use crate::shared::animation::clip_clock::ClipClockParams;
 use crate::{Error, InputError};
 
-/// Computes clip clocks.
+/// Computes the clip clock of each instance on the GPU.
 #[derive(Debug, Clone)]
 pub struct ClipClockPass {
     kernel: Kernel,
 }
 
 impl ClipClockPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the clip clocks of a crowd.
+    /// Prepares a job that computes the clip clocks of a crowd.
     ///
     /// # Errors
-    /// [`InputError`] for a clip set other than the crowd's; [`GpuError`].
+    /// [`InputError`] if the number of clips differs from the crowd's; [`GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -59,24 +59,26 @@ impl ClipClockPass {
     }
 }
 
-/// A prepared computation of clip clocks: set the time, then record.
+/// A prepared computation of clip clocks. In each frame, set the time, then record.
 pub type ClipClockJob = ParamsJob<ClipClockParams>;
 
 impl ClipClockJob {
-    /// Sets the times of the next submission, both in seconds. `elapsed` is as in
-    /// [`super::super::keyframe_cursor::KeyframeCursorJob::set`]. `ahead` is how far ahead of it bones may be sampled
+    /// Sets the times for the next submission, in seconds. `elapsed` is the crowd's time, as in
+    /// [`super::super::keyframe_cursor::KeyframeCursorJob::set`]. `ahead` is how far beyond `elapsed` bones may be sampled
     /// ([`Frame::ahead`](crate::animation::gate::Frame::ahead)).
     ///
     /// # Errors
-    /// [`InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
+    /// [`InputError`] if a time is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`] for errors
+    /// of the device.
     pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
         self.set_through(&mut &*gpu, elapsed, ahead)
     }
 
-    /// As [`ClipClockJob::set`], written by `upload`.
+    /// Does the same as [`ClipClockJob::set`], but writes through `upload`. With [`Staged`](crate::gpu::Staged) writes, one
+    /// submission may contain several frames.
     ///
     /// # Errors
-    /// As [`ClipClockJob::set`].
+    /// Same as [`ClipClockJob::set`].
     pub fn set_through(&self, upload: &mut impl Upload, elapsed: f32, ahead: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         check_seconds("frame.ahead", ahead)?;

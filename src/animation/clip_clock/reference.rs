@@ -11,27 +11,27 @@ use crate::asset::keyframe::keyframe_cursor;
 use crate::shared::animation::clip_clock::CLIP_HASH_FACTOR;
 use crate::shared::animation::gate_state::FRACTION_ONE;
 
-/// Input of [`clip_clocks`]: a crowd at one time.
+/// Input of [`clip_clocks`]: a crowd at one point in time.
 #[derive(Debug, Clone, Copy)]
 pub struct PlayedCrowd<'a> {
     /// The clips that the instances play.
     pub set: &'a ClipSet,
-    /// The instances.
+    /// The instances; each plays one clip of `set`.
     pub instances: &'a [Instance],
-    /// The layers above the base, the lowest first.
+    /// Animation layers above the base, from the lowest to the highest.
     pub layers: &'a [AnimationLayer],
     /// Level of detail of each instance.
     pub lods: &'a [Lod],
-    /// Seconds since the instances' starts.
+    /// Seconds since the instances started.
     pub elapsed: f32,
-    /// How far ahead of their time bones may be sampled, in seconds; 0 = not at all.
+    /// How far beyond `elapsed` bones may be sampled, in seconds; 0 disables sampling ahead.
     pub ahead: f32,
 }
 
-/// Clip clock of each instance. `history` has four words per instance; it is zero at first and is kept from frame to frame.
+/// Clip clock of each instance. `history` has four words per instance. Initialize it with zeros and keep it from frame to frame.
 ///
 /// # Panics
-/// If there are fewer levels of detail or histories than instances.
+/// If `lods` or `history` has fewer entries than there are instances.
 pub fn clip_clocks(crowd: &PlayedCrowd<'_>, history: &mut [[u32; 4]]) -> Vec<ClipClock> {
     let PlayedCrowd { set, instances, layers, lods, elapsed, ahead } = *crowd;
     let of = |(index, instance): (usize, &Instance)| {
@@ -69,7 +69,7 @@ pub fn clip_clocks(crowd: &PlayedCrowd<'_>, history: &mut [[u32; 4]]) -> Vec<Cli
     instances.iter().enumerate().map(of).collect()
 }
 
-/// Hash of the clips that play above the base; 0 if there are none.
+/// Hash of the clips that an instance plays above the base; 0 if there are none.
 fn clips_above(layers: &[AnimationLayer], instance: usize) -> u32 {
     layers.iter().fold(0, |clips: u32, layer| {
         let heard = if layer.weights[instance] > 0.0 { layer.instances[instance].clip + 1 } else { 0 };

@@ -7,7 +7,7 @@ use crate::gpu::bindings::animation::compact as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform, compute_pass};
 use crate::shared::animation::compact::{CompactParams, SCAN, SCATTER, SPREAD};
 
-/// Turns bit masks into lists.
+/// Turns the bit masks of active bones into lists on the GPU.
 #[derive(Debug, Clone)]
 pub struct CompactPass {
     stages: [Kernel; 3],
@@ -21,12 +21,12 @@ pub struct CompactJob {
 }
 
 impl CompactJob {
-    /// Records the compaction.
+    /// Records the compaction in a compute pass of its own.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "animation/compact"));
     }
 
-    /// Adds the compaction to a compute pass that is being recorded, and notifies the readers of [`Active::updated_bones`].
+    /// Records the compaction in an open compute pass, and notifies the readers of [`Active::updated_bones`].
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.updated.update();
         self.job.dispatch(pass);
@@ -34,19 +34,19 @@ impl CompactJob {
 }
 
 impl CompactPass {
-    /// Compiles the pipelines.
+    /// Compiles the compute pipelines of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let stage = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
         Ok(Self { stages: [stage(SPREAD)?, stage(SCAN)?, stage(SCATTER)?] })
     }
 
-    /// Prepares the compaction of a crowd's active bits.
+    /// Prepares a job that turns a crowd's active bits into lists.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn prepare(&self, gpu: &Gpu, crowd: &Crowd, active: &Active) -> Result<CompactJob, GpuError> {
         let params = CompactParams {
             instances: crowd.len() as u32,

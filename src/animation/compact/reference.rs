@@ -1,28 +1,28 @@
-//! Lists from bits: the CPU reference of `kernels/animation/compact.wgsl`.
+//! Conversion of bit masks to lists: the CPU reference of `kernels/animation/compact.wgsl`.
 
 use crate::animation::active::PAIR_AHEAD;
 use crate::animation::gate::reference::ChosenBones;
 use crate::animation::gate_table::bits_of;
 use crate::animation::order::Order;
 
-/// Work lists of one frame.
+/// Work lists of one frame: the pairs to sample, the slots to update and the instances with active bones.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Work {
-    /// Pair index `instance · bones + bone` of each pair to sample, in the order of instances and slots, with the flag
-    /// [`PAIR_AHEAD`] if it is sampled ahead.
+    /// Pair index `instance · bones + bone` of each pair to sample, in the order of instances and slots. The flag [`PAIR_AHEAD`]
+    /// is set if the pair is sampled ahead.
     pub pairs: Vec<u32>,
     /// One bit per slot of each instance, set for active bones and all their descendants.
     pub updated_bones: Vec<u32>,
-    /// Indices of the instances that have an active bone.
+    /// Indices of the instances with at least one active bone.
     pub instances: Vec<u32>,
 }
 
-/// Accumulates the updated bones of this frame with those of earlier frames that readers have not followed yet.
+/// Combines the updated bones of this frame with the bits of earlier frames that some reader has not processed yet.
 pub fn accumulated(before: &[u32], updated_bones: &[u32]) -> Vec<u32> {
     before.iter().zip(updated_bones).map(|(before, now)| before | now).collect()
 }
 
-/// Work lists for the given bits, with [`Order::words`] words per instance.
+/// Builds the work lists from the chosen bits, which have [`Order::words`] words per instance.
 pub fn compact(order: &Order, chosen: &ChosenBones) -> Work {
     let ChosenBones { bits, ahead } = chosen;
     let bones = order.slots.len() as u32;

@@ -1,9 +1,9 @@
-//! Driven bones: bones whose local transforms the caller writes between sampling and concatenation, for inverse kinematics and
-//! ragdolls.
+//! Driven bones: bones whose local transforms the caller overwrites after sampling and before concatenation into model space.
+//! Examples are inverse kinematics and ragdolls.
 //!
-//! A gate does not know what the caller does to a bone. Driven bones are therefore sampled in every frame in which their
-//! instance is visible, at the time of the frame, whatever the gate decides. They and all bones below them count as updated.
-//! They are added to a gate's bits before [`compact`](super::compact) turns the bits into lists.
+//! A gate cannot know how the caller moves a bone. Driven bones of visible instances are therefore sampled in every frame, at the
+//! frame's time, whatever the gate decides. Driven bones and their descendants count as updated. Driven bones are added to a
+//! gate's bits before [`compact`](super::compact) turns the bits into lists.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -15,20 +15,20 @@ pub use pass::DrivePass;
 use super::order::Order;
 pub use crate::shared::animation::drive::DrivenWord;
 
-/// Driven bones of one instance, for [`driven_words`].
+/// The driven bones of one instance: an input of [`driven_words`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DrivenBones<'a> {
     /// Index of the instance in its crowd.
     pub instance: u32,
-    /// Indices of its driven bones in the skeleton, in any order.
+    /// Skeleton indices of the instance's driven bones, in any order.
     pub bones: &'a [u32],
 }
 
-/// The bit words that contain driven bones, each once and in ascending order. An instance may occur several times in `driven`;
-/// its bones add up.
+/// Returns the bit words that contain driven bones, in ascending order and without duplicates. If an instance occurs several
+/// times in `driven`, its bones are combined.
 ///
 /// # Panics
-/// For bones that the order does not have.
+/// If a bone index is not in the skeleton of `order`.
 pub fn driven_words<'a>(order: &Order, driven: impl IntoIterator<Item = DrivenBones<'a>>) -> Vec<DrivenWord> {
     let slot_of = order.slots_of_bones();
     let words = order.words() as u32;

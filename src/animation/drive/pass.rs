@@ -9,26 +9,26 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::animation::drive::DriveParams;
 use crate::{Error, InputError};
 
-/// Adds driven bones to the bones that a gate chose.
+/// Adds driven bones to the bones that a gate chose, on the GPU.
 #[derive(Debug, Clone)]
 pub struct DrivePass {
     kernel: Kernel,
 }
 
 impl DrivePass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the addition to a crowd's bits. Record it after the gate and before the lists
-    /// ([`CompactPass`](crate::animation::compact::CompactPass)).
+    /// Prepares a job that adds driven bones to a crowd's bits. Record the job after the gate and before the compaction into
+    /// lists ([`CompactPass`](crate::animation::compact::CompactPass)).
     ///
     /// # Errors
-    /// [`InputError`] for words that the crowd does not have; [`GpuError`].
+    /// [`InputError`] if the index of a word is beyond the crowd's bits; [`GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

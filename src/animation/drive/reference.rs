@@ -2,11 +2,11 @@
 
 use super::DrivenWord;
 
-/// Adds driven bones to a gate's bits. `bits` are the sampled bones and `ahead` those among them that are sampled ahead, in
-/// `words` words per instance. Instances with `hidden` set are left alone.
+/// Adds driven bones to a gate's bits. `bits` marks the sampled bones and `ahead` the bones that are sampled ahead; both have
+/// `words` words per instance. Driven bones are never sampled ahead. Instances whose `hidden` is true do not change.
 ///
 /// # Panics
-/// For words beyond the bits.
+/// If the index of a driven word is beyond `bits`, `ahead` or the instances of `hidden`.
 pub fn drive(driven: &[DrivenWord], words: usize, hidden: &[bool], [bits, ahead]: [&mut [u32]; 2]) {
     for word in driven {
         let at = word.at as usize;

@@ -1,4 +1,4 @@
-//! A frame of a crowd under a gate as one object, on the device.
+//! A prepared GPU frame of a crowd under a gate, from time to model matrices.
 
 #[cfg(feature = "gpu")]
 mod pass;

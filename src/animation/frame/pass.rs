@@ -1,6 +1,6 @@
 //! A complete frame of a crowd under a gate, from the time to model matrices, in one compute pass. The steps are `clip_clock`,
-//! `gate` (or `budget`) and `compact`, then `keyframe_cursor`, `sample` and `local_to_model` for active bones. The error bound
-//! of [`Gate::Bounded`] holds only in this order, because cursors use the times that the gate saw.
+//! `gate` (or `budget`) and `compact`, then `keyframe_cursor`, `sample` and `local_to_model` for active bones. The error bound of
+//! [`Gate::Bounded`] needs this order: cursors must use the times that the gate used.
 
 use crate::Error;
 use crate::animation::active::Active;
@@ -17,15 +17,15 @@ use crate::animation::sample::SamplePass;
 use crate::asset::skeleton::Skeleton;
 use crate::gpu::{Gpu, Job, Upload, compute_pass};
 
-/// A prepared frame: set the time, then record.
+/// A prepared frame of a crowd under a gate. In each frame, set the time, then record.
 #[derive(Debug, Clone)]
 pub struct GatedFrame {
-    /// The gate's state. Levels of detail may be written between frames.
+    /// State that the gate keeps from frame to frame. The caller may write levels of detail between frames.
     pub state: GateState,
     /// Work lists of the last recorded frame.
     pub active: Active,
     model_matrices: ModelMatrices,
-    /// Whether bones may be sampled ahead of their time.
+    /// Whether bones may be sampled ahead of the frame's time.
     leads: bool,
     clip_clock: ClipClockJob,
     gate: GateJob,
@@ -36,12 +36,14 @@ pub struct GatedFrame {
 }
 
 impl GatedFrame {
-    /// Compiles and prepares all passes for a crowd. Rotations use the crowd's path.
+    /// Compiles and prepares all passes of a frame. Rotations use the crowd's rotation path between keys.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for a crowd of another skeleton, for clips of another set than the crowd's, for a gate
-    /// of other bones or clips or with motion for another rotation path than the crowd's ([`Crowd::path`]), and for
-    /// [`Gate::Bounded`] if the model matrices were prepared for dual quaternion blending; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) in these cases; [`GpuError`](crate::gpu::GpuError) for errors of the device:
+    ///
+    /// - the crowd is of another skeleton, or `clips` is another set than the crowd's;
+    /// - the gate's bones, clips or rotation path ([`Crowd::path`]) differ from the crowd's;
+    /// - the gate is [`Gate::Bounded`], and the model matrices were prepared for dual quaternion blending.
     pub fn new(
         gpu: &Gpu,
         skeleton: &Skeleton,
@@ -69,66 +71,67 @@ impl GatedFrame {
         })
     }
 
-    /// Input of skinning: the crowd's model matrices, with the record of the updated bones and of the gate that chooses them.
+    /// Input of skinning: handle to the crowd's model matrices, with a record of the bones that the frame updated.
     pub fn model_matrices(&self) -> &ModelMatrices {
         &self.model_matrices
     }
 
-    /// Sets the frame and time of the next submission. `elapsed` is in seconds. At 0, the clip time of each
-    /// instance is its `start`. Begin again at 0, with new starts, every few minutes: `f32` seconds lose
-    /// precision.
+    /// Sets the gate's frame and the time in seconds for the next submission. At `elapsed` 0, the clip time of each instance is
+    /// its `start`. Restart at 0 with new starts every few minutes, because `f32` seconds lose precision.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for seconds that are not finite; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) if a time is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS);
+    /// [`GpuError`](crate::gpu::GpuError) for errors of the device.
     pub fn set(&self, gpu: &Gpu, frame: &Frame, elapsed: f32) -> Result<(), Error> {
         self.set_through(&mut &*gpu, frame, elapsed)
     }
 
-    /// As [`GatedFrame::set`], written by `upload`: with [`Staged`](crate::gpu::Staged) writes, several frames may
-    /// be recorded for one submission.
+    /// Does the same as [`GatedFrame::set`], but writes through `upload`. With [`Staged`](crate::gpu::Staged) writes, one
+    /// submission may contain several frames.
     ///
     /// # Errors
-    /// As [`GatedFrame::set`].
+    /// Same as [`GatedFrame::set`].
     pub fn set_through(&self, upload: &mut impl Upload, frame: &Frame, elapsed: f32) -> Result<(), Error> {
         self.clip_clock.set_through(upload, elapsed, if self.leads { frame.ahead } else { 0.0 })?;
         self.gate.set_through(upload, frame)?;
         self.cursor.set_through(upload, elapsed)
     }
 
-    /// As [`GateJob::set_budget`].
+    /// Sets the largest number of bones to sample per frame, from the next submission on.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) unless the gate is [`Gate::Budget`]; [`GpuError`](crate::gpu::GpuError).
+    /// [`InputError`](crate::InputError) for a gate other than [`Gate::Budget`]; [`GpuError`](crate::gpu::GpuError) for errors of
+    /// the device.
     pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
         self.gate.set_budget(gpu, bones)
     }
 
-    /// Records the frame. Afterwards the crowd's model matrices are up to date for the set time.
+    /// Records the frame in a compute pass of its own. When it has run, the crowd's model matrices are valid for the set time.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "animation"));
     }
 
-    /// Adds the frame to a compute pass that is being recorded.
+    /// Records the frame in an open compute pass.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.dispatch_gate(pass);
         self.dispatch_sample(pass);
         self.dispatch_local_to_model(pass);
     }
 
-    /// Adds the first part of the frame: the choice of active bones. It notifies the readers of [`Active::updated_bones`].
+    /// Records part 1 of 3 of the frame: the choice of active bones. It also notifies the readers of [`Active::updated_bones`].
     pub fn dispatch_gate(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.clip_clock.dispatch(pass);
         self.gate.dispatch(pass);
         self.lists.dispatch(pass);
     }
 
-    /// Adds the second part: cursors and samples of the active bones.
+    /// Records part 2 of 3 of the frame: keyframe cursors and samples of the active bones.
     pub fn dispatch_sample(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.cursor.dispatch(pass);
         self.sample.dispatch(pass);
     }
 
-    /// Adds the third part: model matrices of the active bones and all their descendants.
+    /// Records part 3 of 3 of the frame: model matrices of the active bones and all their descendants.
     pub fn dispatch_local_to_model(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.local_to_model.dispatch(pass);
     }

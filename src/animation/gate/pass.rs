@@ -12,7 +12,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform, Upload, compute_pa
 use crate::shared::animation::gate::{BOUNDED, GateParams, OFF, RANDOM, SKIP_PERIOD, UNIFORM};
 use crate::{Error, InputError};
 
-/// Decides which bones are sampled.
+/// Chooses the bones to sample by any [`Gate`], on the GPU.
 #[derive(Debug, Clone)]
 pub struct GatePass {
     decider: Decider,
@@ -20,9 +20,10 @@ pub struct GatePass {
 
 #[derive(Debug, Clone)]
 enum Decider {
-    /// The gate's kernel for one mode. Some modes use the period and the index of the first row of parents.
+    /// The gate kernel, compiled for one mode. `period` (in ticks) and `first_above` (index of the first row of parents) are 0 in
+    /// modes that do not use them.
     Gate { kernel: Kernel, mode: u32, period: u32, first_above: u32, table: TableBuffers },
-    /// The kernels of a budget.
+    /// The kernels of [`Gate::Budget`].
     Budget(Box<BudgetPass>),
 }
 
@@ -30,7 +31,7 @@ impl GatePass {
     /// Uploads a gate's table and compiles its pipelines.
     ///
     /// # Errors
-    /// [`GpuError`] if the device has no room for the table, or fails.
+    /// [`GpuError`] if the device has no memory for the table, or fails.
     pub fn new(gpu: &Gpu, gate: &Gate) -> Result<Self, GpuError> {
         let (mut period, mut first_above) = (0, 0);
         let (mode, table) = match gate {
@@ -54,13 +55,14 @@ impl GatePass {
         Ok(Self { decider: Decider::Gate { kernel, mode, period, first_above, table } })
     }
 
-    /// Prepares the decision from a crowd's clip clocks.
+    /// Prepares a job that chooses the bones of a crowd to sample. The crowd's clip clocks are its input.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd with other bones or clips than the gate's table, for a table whose motion
-    /// was computed along another rotation path than the crowd uses, for lists of active bones of another
-    /// crowd, and for [`Gate::Bounded`] if the model matrices were prepared for dual quaternion blending;
-    /// [`GpuError`] for errors of the device.
+    /// [`InputError`] in these cases; [`GpuError`] for errors of the device:
+    ///
+    /// - the crowd's bones, clips or rotation path differ from the gate's table;
+    /// - `active` belongs to another crowd;
+    /// - the gate is [`Gate::Bounded`], and the model matrices were prepared for dual quaternion blending.
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -90,7 +92,7 @@ impl GatePass {
             frame: 0,
         };
         let uniform = Uniform::new(gpu, "gate", &params)?;
-        // Error budget that each bone leaves, for descendants that need it in the same frame.
+        // Error budget that each bone leaves for its descendants in the same frame.
         let is_bounded = mode == BOUNDED;
         let remaining = Buffer::new(gpu, "remaining", if is_bounded { crowd.pairs() } else { 0 })?;
         if is_bounded {
@@ -106,14 +108,14 @@ impl GatePass {
             remaining: remaining.slice(),
             bits: active.bits.slice(),
         };
-        // One thread per word of bits, or one per instance if words depend on each other.
+        // One thread per word of bits. The words of a bounded gate depend on each other, so it uses one thread per instance.
         let threads = params.instances * if is_bounded { 1 } else { params.words };
         let job = Job::spread(gpu, "animation/gate", kernel, group.bind(gpu, kernel)?, threads)?;
         Ok(GateJob { work: Work::Gate { params, uniform, job } })
     }
 }
 
-/// A prepared decision: set the frame, then record.
+/// A prepared gate. In each frame, set the frame, then record.
 #[derive(Debug, Clone)]
 pub struct GateJob {
     work: Work,
@@ -126,7 +128,7 @@ enum Work {
 }
 
 impl GateJob {
-    /// Sets the frame of the next submission. [`Gate::Budget`] ignores it.
+    /// Sets the clock values of the next submission. [`Gate::Budget`] ignores them.
     ///
     /// # Errors
     /// [`GpuError`] for errors of the device.
@@ -134,10 +136,11 @@ impl GateJob {
         self.set_through(&mut &*gpu, frame)
     }
 
-    /// As [`GateJob::set`], written by `upload`.
+    /// Does the same as [`GateJob::set`], but writes through `upload`. With [`Staged`](crate::gpu::Staged) writes, one submission
+    /// may contain several frames.
     ///
     /// # Errors
-    /// As [`GateJob::set`].
+    /// Same as [`GateJob::set`].
     pub fn set_through(&self, upload: &mut impl Upload, frame: &Frame) -> Result<(), GpuError> {
         let Frame { ticks, frame_ticks, frame, ahead: _ } = *frame;
         match &self.work {
@@ -148,10 +151,10 @@ impl GateJob {
         }
     }
 
-    /// Sets the number of bones that may be sampled from the next submission on.
+    /// Sets the largest number of bones to sample per frame, from the next submission on.
     ///
     /// # Errors
-    /// [`InputError`] unless the gate is [`Gate::Budget`]; [`GpuError`] for errors of the device.
+    /// [`InputError`] for a gate other than [`Gate::Budget`]; [`GpuError`] for errors of the device.
     pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
         match &self.work {
             Work::Gate { .. } => {
@@ -162,12 +165,12 @@ impl GateJob {
         }
     }
 
-    /// Records the decision.
+    /// Records the gate in a compute pass of its own.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "animation/gate"));
     }
 
-    /// Adds the decision to a compute pass that is being recorded.
+    /// Records the gate in an open compute pass.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         match &self.work {
             Work::Gate { job, .. } => job.dispatch(pass),

@@ -8,27 +8,28 @@ use crate::animation::gate_table::{AnimatedBones, BoundTable, EVERYTHING, Priori
 use crate::animation::lod::{Lod, OMEGA_ONE};
 use crate::shared::animation::gate::{SCRAMBLE_FIRST, SCRAMBLE_SECOND};
 
-/// The bones that a gate decides to sample.
+/// Bones that a gate chose to sample.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ChosenBones {
-    /// One bit per slot of each instance, in [`AnimatedBones::words`] words per instance.
+    /// One bit per slot of each instance, in [`AnimatedBones::words`] words per instance. A bit is set if the slot's bone is
+    /// sampled.
     pub bits: Vec<u32>,
-    /// The bones of `bits` that are sampled ahead of the frame's time, in the same layout.
+    /// Subset of `bits` that is sampled ahead of the frame's time, in the same layout.
     pub ahead: Vec<u32>,
 }
 
 impl ChosenBones {
-    /// The words of `bits` and `ahead`, in the layout of `Active::bits`.
+    /// Concatenates `bits` and `ahead`, as at the beginning of `Active::bits`.
     pub fn words(&self) -> Vec<u32> {
         [self.bits.as_slice(), &self.ahead].concat()
     }
 }
 
-/// Decides which bones are sampled. `sampled` holds, for each slot of each instance, the accumulated motion
-/// at which it was last sampled; only [`Gate::Bounded`] and [`Gate::Budget`] use it.
+/// Chooses the bones to sample. `sampled` holds, for each slot of each instance, the accumulated motion when the slot was last
+/// sampled. Only [`Gate::Bounded`] and [`Gate::Budget`] use it.
 ///
 /// # Panics
-/// If there are fewer levels of detail or sums of motion than the clip clocks need.
+/// If `lods` or `sampled` is too short for the clip clocks.
 pub fn gate(
     gate: &Gate,
     frame: &Frame,
@@ -53,20 +54,20 @@ pub fn gate(
     }
 }
 
-/// Up to 32 bones of an instance.
+/// Up to 32 bones of an instance: the bones of one word of bits.
 struct Word<'a> {
     instance: u32,
-    /// Slot of the first bone.
+    /// Slot of the word's first bone.
     first: usize,
     lod: &'a Lod,
     clip_clock: &'a ClipClock,
-    /// Mask with a bit for each bone of the word.
+    /// Mask with a bit for each existing bone of the word.
     all: u32,
-    /// The bones that may have to be sampled.
+    /// Mask of the bones that the gate may have to sample.
     candidates: u32,
 }
 
-/// The words of bits of one instance.
+/// Splits the bones of one instance into words of 32.
 fn words<'a>(
     bones: &'a AnimatedBones,
     instance: usize,
@@ -81,7 +82,8 @@ fn words<'a>(
     })
 }
 
-/// Decides on each word separately: `thin` selects from a word's candidates, unless the instance is at full detail.
+/// Decides on each word separately. `thin` selects bones from a word's candidates; at full detail all candidates are selected
+/// without it.
 fn thinned(
     bones: &AnimatedBones,
     lods: &[Lod],
@@ -101,7 +103,7 @@ fn thinned(
     chosen
 }
 
-/// The decision of [`Gate::Bounded`].
+/// Chooses bones by the rule of [`Gate::Bounded`].
 fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled: &mut [u32]) -> ChosenBones {
     let mut chosen = ChosenBones::default();
     let bones = table.animated_bones();
@@ -120,15 +122,15 @@ fn bounded(table: &BoundTable, lods: &[Lod], clip_clocks: &[ClipClock], sampled:
     chosen
 }
 
-/// Hashes a word with Wellons' "lowbias32".
+/// Hashes a 32-bit word with the function "lowbias32" (Wellons 2018).
 pub fn scramble(word: u32) -> u32 {
     let mixed = (word ^ (word >> 16)).wrapping_mul(SCRAMBLE_FIRST);
     let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(SCRAMBLE_SECOND);
     mixed ^ (mixed >> 15)
 }
 
-/// Whether A's rule skips this update. One update per period is skipped: every update if the period is no longer than a frame,
-/// otherwise the one in which the clock passes a multiple of the period.
+/// Returns whether the rule of thesis A skips this update: one update per period. If the period is no longer than a frame, every
+/// update is skipped. Otherwise the update is skipped in which the clock passes a multiple of the period.
 pub fn is_skipped(period: u32, ticks: u32, frame_ticks: u32) -> bool {
     period <= frame_ticks || ticks % period < frame_ticks
 }
@@ -158,18 +160,20 @@ fn at_random(word: &Word<'_>, bones: usize, frame: &Frame) -> u32 {
     bits_of(word.candidates).filter(is_active).map(|bit| 1 << bit).sum()
 }
 
-/// The remaining error budget of an instance.
+/// Error budget that remains while the bones of an instance are decided in order.
 struct Remaining<'a> {
-    /// Left by the previous bone.
+    /// Budget left by the previous bone in the order.
     last: u32,
-    /// Left by bones with several children, by slot.
+    /// Budget left by each bone, by slot. Later children of the bone read it.
     by_slot: &'a mut [u32],
 }
 
-/// Decides on the bones of a word, parents first. A bone whose missed motion is within its fraction of the remaining budget is
-/// not sampled; the unused part is left to the bones below it. A bone that missed more is sampled and leaves all of the budget.
-/// It is sampled ahead if its motion until then is within its fraction too. Returns the sampled bones, and those among them
-/// that are sampled ahead.
+/// Chooses the bones of a word to sample, parents first. Returns the mask of the sampled bones, and the mask of those that are
+/// sampled ahead.
+///
+/// A bone may use its fraction of the remaining budget. If its missed motion is within the fraction, the bone is not sampled, and
+/// the missed motion is subtracted from the budget. Otherwise the bone is sampled and subtracts nothing. A sampled bone is
+/// sampled ahead if its motion until the look-ahead time is also within the fraction; this motion is then subtracted.
 fn by_motion(
     table: &BoundTable,
     word: &Word<'_>,
@@ -177,8 +181,8 @@ fn by_motion(
     remaining: &mut Remaining<'_>,
 ) -> [u32; 2] {
     let Word { first, lod, clip_clock, all, candidates, .. } = *word;
-    // Accumulated motion describes a single clip, so it cannot be used for other update reasons. If nothing may be missed, all
-    // candidates are sampled too.
+    // Accumulated motion describes a single clip, so forced or blended instances cannot use it and sample all bones. If no motion
+    // may be missed, all candidates are sampled.
     let asked = if clip_clock.reason().forces_motion() { all } else { 0 };
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
     let [mut active, mut ahead] = [forced, 0];

@@ -1,26 +1,26 @@
-//! Finds the bones that each clip moves.
+//! The set of bones that each clip moves.
 
 use crate::InputError;
 use crate::animation::clip_set::ClipSet;
 use crate::animation::order::Order;
 use crate::asset::clip::{Clip, Interpolation, TransformPart};
 
-/// The bones that each clip of a set moves. [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and `Random` decide by this
-/// table, and every other gate table contains it.
+/// The bones that each clip of a set moves. The gates [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and `Random` use this
+/// table alone; every other gate table contains one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnimatedBones {
     bones: usize,
     words: usize,
-    /// For each clip, the index of its last row, then one bit per slot, set if the clip moves the slot's
-    /// bone.
+    /// For each clip: the index of its last row in the gate table, then one bit per slot. The bit is set if the clip moves the
+    /// slot's bone.
     records: Vec<u32>,
 }
 
 impl AnimatedBones {
-    /// Finds the bones whose tracks change along their clips.
+    /// Finds the bones whose translation, rotation or scale changes along each clip.
     ///
     /// # Errors
-    /// [`InputError`] for clips other than the set's, and for a skeleton with another number of bones.
+    /// [`InputError`] if `clips` are not the clips of `set`, and if the skeleton's number of bones differs.
     pub fn new(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
         set.check_clips(clips)?;
         InputError::check_same("skeleton.len", order.slots.len(), set.bones(), "as the clips'")?;
@@ -42,20 +42,20 @@ impl AnimatedBones {
         self.bones
     }
 
-    /// Number of words of bits per instance.
+    /// Number of 32-bit words per instance that hold one bit per bone.
     pub fn words(&self) -> usize {
         self.words
     }
 
-    /// Number of clips of the set.
+    /// Number of clips in the clip set.
     pub fn clips(&self) -> usize {
         self.records.len() / (self.words + 1)
     }
 
-    /// The bits of a clip, one per slot, set if the clip moves the slot's bone.
+    /// Bit mask of a clip, with one bit per slot. A bit is set if the clip moves the slot's bone.
     ///
     /// # Panics
-    /// If the set has no such clip.
+    /// If the clip set has no clip with this index.
     pub fn of(&self, clip: u32) -> &[u32] {
         &self.record(clip)[1..]
     }
@@ -63,28 +63,28 @@ impl AnimatedBones {
     /// Number of bones that a clip moves.
     ///
     /// # Panics
-    /// If the set has no such clip.
+    /// If the clip set has no clip with this index.
     pub fn count(&self, clip: u32) -> usize {
         self.of(clip).iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// The slots whose bones a clip moves.
+    /// Iterates over the slots whose bones a clip moves, in ascending order.
     pub(crate) fn slots(&self, clip: u32) -> impl Iterator<Item = usize> {
         let bits = self.of(clip).iter().enumerate();
         bits.flat_map(|(word, bits)| bits_of(*bits).map(move |bit| 32 * word + bit))
     }
 
-    /// Whether a clip moves the bone of a slot.
+    /// Returns whether a clip moves the bone of a slot.
     pub(crate) fn contains(&self, clip: u32, slot: usize) -> bool {
         self.of(clip)[slot / 32] >> (slot % 32) & 1 != 0
     }
 
-    /// The index of a clip's last row in a table.
+    /// Index of a clip's last row in the gate table.
     pub(crate) fn last_row(&self, clip: u32) -> u32 {
         self.record(clip)[0]
     }
 
-    /// The table as kernels read it: for each clip the index of its last row, then one bit per slot.
+    /// The table in the kernels' layout. For each clip: the index of its last row, then one bit per slot.
     #[cfg(feature = "gpu")]
     pub(crate) fn records(&self) -> &[u32] {
         &self.records
@@ -95,7 +95,7 @@ impl AnimatedBones {
     }
 }
 
-/// The indices of the bits that are set in a word.
+/// Iterates over the indices of the set bits of a word, in ascending order.
 pub(crate) fn bits_of(word: u32) -> impl Iterator<Item = usize> {
     std::iter::successors(Some(word), |rest| Some(rest & rest.wrapping_sub(1)))
         .take_while(|rest| *rest != 0)
@@ -118,7 +118,7 @@ fn moves(clip: &Clip, bone: usize) -> bool {
                 if !is_spline {
                     return !same(key[0], clip.key(track, 0));
                 }
-                // The in-tangent of the first key and the out-tangent of the last have no effect.
+                // The in-tangent of the first key and the out-tangent of the last key have no effect.
                 let bends = |tangent: [f32; 4], is_used: bool| is_used && tangent != [0.0; 4];
                 key[1] != clip.key(track, 0) || bends(key[0], at > 0) || bends(key[2], at + 1 < keys)
             })

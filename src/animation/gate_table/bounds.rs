@@ -1,4 +1,4 @@
-//! Bounds on the motion that a stale bone misses.
+//! Table of upper bounds on the motion that a stale bone misses.
 
 use super::columns::{Column, columns};
 use super::motion::MotionTable;
@@ -14,33 +14,38 @@ use crate::shared::animation::gate;
 use crate::shared::animation::gate_state::FRACTION_ONE;
 use crate::shared::animation::order::NO_PARENT;
 
-/// Exponent of the rates of motion in the fractions of the error budget. With 1, the fewest samples are needed if fractions
-/// alone decide; with 0, all animated bones get equal fractions.
+/// Exponent applied to each bone's rate of motion when the error budget is divided into fractions. At 1, the fewest samples are
+/// needed if only the fractions decide. At 0, all animated bones get equal fractions.
 const EVENNESS: f64 = 0.5;
 
-/// Factor by which a bone may exceed its fraction. The bound holds for any factor, because the bones below get only what
-/// remains. A factor above 1 helps because bones seldom all miss their whole fraction at once. Of 1, 1.6, 2.5 and 4, the factor
-/// 1.6 needs the fewest samples on a walk and a run if `uniform` samples every 2nd to 4th frame, and 1 if it samples every 8th.
+/// Factor by which a bone may exceed its fraction of the budget. The error bound holds for any factor, because the bones below
+/// get only the budget that remains. A factor above 1 helps because bones seldom miss their whole fraction at the same time.
+///
+/// The factors 1, 1.6, 2.5 and 4 were compared on a walk and a run. 1.6 needs the fewest samples where `uniform` samples every
+/// 2nd to 4th frame, and 1 where it samples every 8th.
 const FAVOUR: f64 = 1.6;
 
-/// Bounds on the motion that each bone contributes to any point, and each bone's fraction of the error budget: the table of
-/// [`Gate::Bounded`](crate::animation::Gate::Bounded).
+/// Table of [`Gate::Bounded`](crate::animation::Gate::Bounded): upper bounds on the motion that each bone adds to any point, and
+/// each bone's fraction of the error budget.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundTable {
     motion: MotionTable,
-    /// Index of the first clip's row of parents.
+    /// Index of the first clip's row of parents: per slot, the nearest ancestor that the clip moves.
     first_above: usize,
     radius: f32,
 }
 
 impl BoundTable {
-    /// Computes the table of a set's clips. `bone_radii` gives, for each bone, the largest distance in metres from its origin
-    /// to a point that follows it alone. `path` is the rotation path with which instances are sampled. Crowds with another path
-    /// are refused, because nlerp turns faster than slerp in the middle between two keys.
+    /// Computes the table for a set of clips. `bone_radii` gives, for each bone, the largest distance in metres from its origin
+    /// to a point that follows only this bone. `path` is the rotation path that instances are sampled with. Crowds with another
+    /// path are refused, because nlerp turns faster than slerp in the middle between two keys.
     ///
     /// # Errors
-    /// As [`AnimatedBones::new`]; [`InputError`] also for a number of radii that is not one per bone, for radii that are
-    /// negative or not finite, and for a table of more than 2²⁷ entries.
+    /// [`InputError`] in these cases:
+    ///
+    /// - [`AnimatedBones::new`] refuses the skeleton, set or clips;
+    /// - there is not one radius per bone, or a radius is negative or not finite;
+    /// - the table would have more than 2²⁷ entries.
     pub fn new(
         skeleton: &Skeleton,
         set: &ClipSet,
@@ -70,7 +75,7 @@ impl BoundTable {
         Ok(table)
     }
 
-    /// Writes each bone's nearest ancestor that the clip moves.
+    /// Writes the row of parents of a clip: for each animated slot, the nearest ancestor slot that the clip moves.
     fn write_tree(&mut self, skeleton: &Skeleton, order: &Order, clip: u32) {
         let slot_of = order.slots_of_bones();
         let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
@@ -95,24 +100,25 @@ impl BoundTable {
         }
     }
 
-    /// The bones that each clip moves.
+    /// Table of the bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.motion.animated_bones
     }
 
-    /// Rotation path for which the motion was computed.
+    /// Rotation path that the motion was computed for.
     pub fn path(&self) -> RotationPath {
         self.motion.path
     }
 
-    /// Entries row by row: the accumulated motion at the row's time and its rise to the next row. A clip's last row holds the
-    /// motion of the whole clip and an [`BoneErrorBudget`]. One more row per clip follows after all others: for each slot that the
-    /// clip moves, the nearest ancestor slot that the clip moves, or `u32::MAX`.
+    /// Table entries, row by row. Each entry is the accumulated motion at the row's time and its increase until the next row. In
+    /// a clip's last row, the entry is the motion of the whole clip and a [`BoneErrorBudget`]. After the rows of all clips, one
+    /// row per clip follows. For each slot that the clip moves, it gives the nearest ancestor slot that the clip moves, or
+    /// `u32::MAX` if there is none.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.motion.rows
     }
 
-    /// Upper bound on the distance of any point from the model's origin in any clip, in metres.
+    /// Upper bound, in metres, on the distance of any point from the model's origin in any clip.
     pub fn radius(&self) -> f32 {
         self.radius
     }
@@ -120,7 +126,7 @@ impl BoundTable {
     /// Converts a distance in metres of model space to the unit of [`Lod::allowed`](crate::animation::Lod::allowed). Divide
     /// metres in the world by the instance's scale first.
     pub fn units(&self, metres: f32) -> u32 {
-        // A whole clip's motion is below `EVERYTHING`, so the clamp changes no decision.
+        // The motion of a whole clip is below `EVERYTHING`, so the clamp changes no decision.
         (f64::from(metres) / self.motion.unit).clamp(0.0, f64::from(EVERYTHING - 1)).floor() as u32
     }
 
@@ -129,63 +135,63 @@ impl BoundTable {
         self.motion.unit as f32
     }
 
-    /// Index of the first clip's row of parents.
+    /// Index of the first clip's row of parents: per slot, the nearest ancestor that the clip moves.
     #[cfg(feature = "gpu")]
     pub(crate) fn first_above(&self) -> u32 {
         self.first_above as u32
     }
 
-    /// The motion of a slot in a row.
+    /// Accumulated motion of a slot at a row, and its increase until the next row.
     pub(crate) fn motion(&self, row: u32, slot: usize) -> [u32; 2] {
         self.motion.motion(row, slot)
     }
 
-    /// A slot's motion over a whole clip, and its error budget.
+    /// Motion of a slot over a whole clip, and the slot's error budget.
     pub(crate) fn of_clip(&self, clip: u32, slot: usize) -> (u32, BoneErrorBudget) {
         let [period, granted] = self.motion.of_clip(clip, slot);
         (period, BoneErrorBudget(granted))
     }
 
-    /// Nearest ancestor slot that the clip moves, for a slot that the clip moves.
+    /// Nearest ancestor slot that the clip moves. `slot` must be a slot that the clip moves.
     pub(crate) fn above(&self, clip: u32, slot: usize) -> Option<usize> {
         let [above, _] = self.motion.motion(self.first_above as u32 + clip, slot);
         (above != NO_PARENT).then_some(above as usize)
     }
 }
 
-/// A bone's share of the allowed error, packed for the kernel.
+/// A bone's fraction of the allowed error and its rounding slack, packed for the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoneErrorBudget(pub u32);
 
 impl BoneErrorBudget {
-    /// Flag: the nearest animated ancestor is not the previous bone in the order.
+    /// Flag: the nearest animated ancestor is not the previous animated bone in the order.
     const STARTS: u32 = gate::STARTS;
-    /// Flag: a later bone needs what this bone leaves.
+    /// Flag: a later bone reads the budget that this bone leaves.
     const REMAINING: u32 = gate::REMAINING;
 
-    /// Packs a fraction from 0 to 1 and `quantization_slack`, which is a power of two or 0.
+    /// Packs a fraction from 0 to 1, and a quantization slack in units of motion. The slack must be a power of two or 0.
     pub(super) fn new(fraction: f64, quantization_slack: u32) -> Self {
         let bits = u32::BITS - quantization_slack.leading_zeros();
         Self(((fraction * f64::from(FRACTION_ONE)).floor() as u32) << gate::BUDGET_FRACTION_SHIFT | bits)
     }
 
-    /// Fraction of what the ancestors leave, in 65536ths.
+    /// Fraction of the budget left by the bone's ancestors, in 1/65536.
     pub fn fraction(self) -> u32 {
         self.0 >> gate::BUDGET_FRACTION_SHIFT
     }
 
-    /// Number of units of motion that rounding may hide.
+    /// Motion that rounding may hide, in units of the table. It is added to the missed motion.
     pub fn quantization_slack(self) -> u32 {
         ((1_u64 << (self.0 & gate::BUDGET_SLACK_MASK)) >> 1) as u32
     }
 
-    /// Whether the nearest animated ancestor is not the previous bone in the order.
+    /// Returns whether the nearest animated ancestor differs from the previous animated bone in the order.
     pub fn starts(self) -> bool {
         self.0 & Self::STARTS != 0
     }
 }
 
-/// Sets each bone's fraction of the error budget that its ancestors leave.
+/// Sets each bone's fraction of the error budget that its ancestors leave, from its rate of motion.
 fn distribute_budget(skeleton: &Skeleton, columns: &mut [Column]) {
     let rates: Vec<f64> = columns.iter().map(|column| column.path.total().powf(EVENNESS)).collect();
     for (column, fraction) in columns.iter_mut().zip(budget_fractions(skeleton, &rates)) {

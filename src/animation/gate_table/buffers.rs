@@ -11,19 +11,19 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 pub(crate) struct TableBuffers {
     pub animated_bones: Buffer<u32>,
     pub rows: Buffer<[u32; 2]>,
-    /// Number of entries per row.
+    /// Number of table entries per row.
     pub stride: u32,
-    /// Number of words of bits per instance.
+    /// Number of 32-bit words per instance that hold one bit per bone.
     pub words: u32,
     bones: usize,
     clips: usize,
-    /// Rotation path of the motion; `None` for a table without motion.
+    /// Rotation path that the motion was computed for; `None` for a table without motion.
     path: Option<RotationPath>,
 }
 
 impl TableBuffers {
     pub fn of_animated_bones(gpu: &Gpu, table: &AnimatedBones) -> Result<Self, GpuError> {
-        // Placeholder: the kernel reads no entry of this table.
+        // Placeholder row: kernels that decide by animated bones alone read no entry.
         Self::new(gpu, table, &[[0; 2]], 0, None)
     }
 
@@ -59,7 +59,7 @@ impl TableBuffers {
         })
     }
 
-    /// Refuses a crowd whose bones, clips or rotation path differ from the table's.
+    /// Returns an error if the bones, clips or rotation path of `crowd` differ from the table's.
     pub fn check(&self, crowd: &Crowd) -> Result<(), InputError> {
         InputError::check_same("table.bones", self.bones, crowd.bones, "as the crowd's")?;
         InputError::check_same("table.clips", self.clips, crowd.clips, "as the crowd's")?;

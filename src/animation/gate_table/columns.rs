@@ -1,13 +1,13 @@
-//! The motion of one bone along a clip, as a column of a table.
+//! Motion of one bone along a clip, as a column of a gate table.
 
 use super::{BoneErrorBudget, EVERYTHING};
 use crate::animation::motion::{BoneMotion, Path};
 
-/// The motion of one bone along a clip.
+/// Motion of one bone along a clip: a column of a gate table.
 pub(super) struct Column {
-    /// Path of the points that follow the bone.
+    /// Path length of the points that follow the bone, in the table's dimension.
     pub(super) path: Path,
-    /// Fraction of what the ancestors leave, 0 to 1.
+    /// Fraction of the error budget left by the bone's ancestors, 0 to 1.
     pub(super) fraction: f64,
 }
 
@@ -26,12 +26,12 @@ impl Column {
         Self { path, fraction: 0.0 }
     }
 
-    /// Writes the column into a table.
+    /// Writes the column into a table with `stride` entries per row, in multiples of `unit`.
     ///
-    /// Rounding: sums at row starts go to the nearest unit, rises go up, and interpolated sums go down. The difference of two
-    /// sums is thus at most 4 units too small. Fractions are cut to 16 bits (2⁻¹⁶ of a segment) and may also be off by the
-    /// rounding of their division. For two sums, 2⁻¹² of the steepest segment exceeds both errors. The quantization slack
-    /// covers these errors and is a power of two.
+    /// Rounding: sums at row starts are rounded to nearest, rises are rounded up, and interpolated sums are rounded down. The
+    /// difference of two sums is thus at most 4 units too small. Fractions are truncated to 16 bits (2⁻¹⁶ of a segment), and
+    /// their division may add a rounding error. For two sums, 2⁻¹² of the steepest segment exceeds both errors. The quantization
+    /// slack is a power of two that covers all of these errors.
     pub(super) fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
         let mut sum = 0.0;
         let mut steepest = 0.0_f64;

@@ -1,4 +1,4 @@
-//! Motion that a stale bone is expected to show.
+//! Table of the motion that a stale bone is expected to show.
 
 use super::AnimatedBones;
 use super::columns::columns;
@@ -10,17 +10,16 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// Expected motion that each bone contributes to points that follow it or a bone below it, as a root sum of squares.
-/// [`Gate::Budget`](crate::animation::Gate::Budget) ranks bones by it.
+/// Table of [`Gate::Budget`](crate::animation::Gate::Budget): the expected motion that each bone adds to points that follow the
+/// bone or its descendants, as a root sum of squares. The gate ranks bones by it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectationTable(MotionTable);
 
 impl ExpectationTable {
-    /// Computes the table of a set's clips. The arguments are those of
-    /// [`BoundTable::new`](super::BoundTable::new).
+    /// Computes the table for a set of clips. The arguments are the same as for [`BoundTable::new`](super::BoundTable::new).
     ///
     /// # Errors
-    /// As [`BoundTable::new`](super::BoundTable::new).
+    /// The same errors as [`BoundTable::new`](super::BoundTable::new).
     pub fn new(
         skeleton: &Skeleton,
         set: &ClipSet,
@@ -36,28 +35,29 @@ impl ExpectationTable {
         Ok(Self(table))
     }
 
-    /// The bones that each clip moves.
+    /// Table of the bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.0.animated_bones
     }
 
-    /// Rotation path for which the motion was computed.
+    /// Rotation path that the motion was computed for.
     pub fn path(&self) -> RotationPath {
         self.0.path
     }
 
-    /// Entries row by row: the accumulated motion at the row's time and its rise to the next row. A clip's last row holds the
-    /// motion of the whole clip and an [`BoneErrorBudget`](super::BoneErrorBudget) of 0.
+    /// Table entries, row by row. Each entry is the accumulated motion at the row's time and its increase until the next row. In
+    /// a clip's last row, the entry is the motion of the whole clip and a [`BoneErrorBudget`](super::BoneErrorBudget) whose
+    /// fraction is 0.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.0.rows
     }
 
-    /// The motion of a slot in a row.
+    /// Accumulated motion of a slot at a row, and its increase until the next row.
     pub(crate) fn motion(&self, row: u32, slot: usize) -> [u32; 2] {
         self.0.motion(row, slot)
     }
 
-    /// A slot's motion over a whole clip.
+    /// Motion of a slot over a whole clip.
     pub(crate) fn period(&self, clip: u32, slot: usize) -> u32 {
         self.0.of_clip(clip, slot)[0]
     }

@@ -1,5 +1,6 @@
-//! Tables by which gates decide, computed once when clips are loaded. Columns are the slots of an [`Order`](super::Order). Rows
-//! are the key times of each clip, one clip after another; a clip's last row describes the whole clip.
+//! Tables that gates decide by, computed once when clips are loaded. A table has one column per slot of the bone
+//! [`Order`](super::Order). It has one row per key time of each clip, one clip after another. The last row of each clip describes
+//! the whole clip.
 
 mod animated_bones;
 mod bounds;
@@ -24,17 +25,17 @@ pub(crate) use buffers::TableBuffers;
 pub use expectations::ExpectationTable;
 pub use priorities::PriorityTable;
 
-/// Largest accumulated motion of a whole clip, in units of the table.
+/// Accumulated motion of a whole clip cannot exceed this value, in units of the table.
 const MAX_MOTION: f64 = EVERYTHING as f64;
 
-/// The largest number of entries of a table.
+/// Largest number of entries of a table.
 const MAX_ENTRIES: usize = 1 << 27;
 
-/// Refuses sampling with a rotation path other than the one for which a table's motion was computed. A table without motion
-/// permits any path.
+/// Returns an error if `sampled` differs from the rotation path `of_table` that a table's motion was computed for. A table
+/// without motion (`None`) allows any path.
 ///
 /// # Errors
-/// [`InputError`] that names both paths.
+/// [`InputError`] if the paths differ; the message names both paths.
 pub fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) -> Result<(), InputError> {
     match of_table {
         Some(path) if path != sampled => {
@@ -45,12 +46,12 @@ pub fn check_path(of_table: Option<RotationPath>, sampled: RotationPath) -> Resu
     }
 }
 
-/// Number of rows of all clips in a set.
+/// Number of rows of all clips in a set, without rows of parents.
 fn rows_of(set: &ClipSet) -> usize {
     set.clips().iter().map(|entry| set.rows(entry) as usize).sum()
 }
 
-/// Zeroed entries for the rows of a set's clips and `more` rows after them, with `stride` entries per row.
+/// Returns zeroed entries for the rows of all clips plus `more` rows, with `stride` entries per row.
 fn empty_rows(set: &ClipSet, more: usize, stride: usize) -> Result<Vec<[u32; 2]>, InputError> {
     let rows = rows_of(set) + more;
     match rows.checked_mul(stride).filter(|entries| *entries <= MAX_ENTRIES) {

@@ -1,4 +1,4 @@
-//! Tables of accumulated motion, shared by the bound table and the expectation table.
+//! Table of accumulated motion, used by the bound table and the expectation table.
 
 use super::columns::Column;
 use super::{AnimatedBones, MAX_MOTION, empty_rows};
@@ -10,20 +10,20 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// Accumulated motion of each row and slot: the sum at the row's time and its rise to the next row, in units of the table. A
-/// clip's last row holds the motion of the whole clip and an [`BoneErrorBudget`](super::BoneErrorBudget).
+/// Accumulated motion per row and slot. Each entry is the sum at the row's time and its increase until the next row, in units of
+/// the table. A clip's last row holds the motion of the whole clip and a [`BoneErrorBudget`](super::BoneErrorBudget).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MotionTable {
     pub animated_bones: AnimatedBones,
-    /// Rotation path between keys for which the motion was computed.
+    /// Rotation path between keys that the motion was computed for.
     pub path: RotationPath,
     pub rows: Vec<[u32; 2]>,
-    /// Size of one unit, in metres or in the dimension of the motion.
+    /// Size of one unit of accumulated motion, in metres or in the dimension of the motion.
     pub unit: f64,
 }
 
 impl MotionTable {
-    /// Makes a table without motion, with `more` rows after the clips' rows, and the order of its columns.
+    /// Makes a table without motion, with `more` rows after the clips' rows. Also returns the order of the table's columns.
     pub fn new(
         skeleton: &Skeleton,
         set: &ClipSet,
@@ -39,7 +39,7 @@ impl MotionTable {
         Ok((Self { animated_bones, path, rows, unit: 1.0 }, order))
     }
 
-    /// Writes the columns of every clip, in the smallest unit that lets them fit.
+    /// Writes the columns of every clip. It chooses the smallest unit in which every clip's motion fits.
     pub fn fill(&mut self, order: &Order, set: &ClipSet, columns: &[Vec<Column>]) -> Result<(), InputError> {
         for (clip, columns) in columns.iter().enumerate() {
             if let Some(bone) = columns.iter().position(|column| !column.path.total().is_finite()) {
@@ -59,17 +59,17 @@ impl MotionTable {
         Ok(())
     }
 
-    /// Number of entries of a row: one per bone.
+    /// Number of entries per row: one per bone.
     pub fn stride(&self) -> usize {
         self.animated_bones.bones()
     }
 
-    /// The motion of a slot in a row.
+    /// Accumulated motion of a slot at a row, and its increase until the next row.
     pub fn motion(&self, row: u32, slot: usize) -> [u32; 2] {
         self.rows[row as usize * self.stride() + slot]
     }
 
-    /// A slot's motion in a clip's last row.
+    /// Entry of a slot in a clip's last row: the motion of the whole clip, and the encoded error budget.
     pub fn of_clip(&self, clip: u32, slot: usize) -> [u32; 2] {
         self.motion(self.animated_bones.last_row(clip), slot)
     }

@@ -1,4 +1,4 @@
-//! The table of each bone's priority at each time.
+//! Table of each bone's priority at each key time.
 
 use super::{AnimatedBones, empty_rows};
 use crate::InputError;
@@ -7,7 +7,7 @@ use crate::animation::order::Order;
 use crate::animation::priority::Priorities;
 use crate::asset::clip::Clip;
 
-/// Priorities of each clip's bones, by which [`Gate::SkipPeriod`](crate::animation::Gate::SkipPeriod) decides.
+/// Table of [`Gate::SkipPeriod`](crate::animation::Gate::SkipPeriod): the priority of each bone at each key time of each clip.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PriorityTable {
     animated_bones: AnimatedBones,
@@ -16,12 +16,11 @@ pub struct PriorityTable {
 }
 
 impl PriorityTable {
-    /// Computes the table from one set of priorities per clip. Before its first key, a bone has the priority
-    /// of that key.
+    /// Computes the table. `priorities` has one entry per clip. Before its first key, a bone has the priority of that key.
     ///
     /// # Errors
-    /// As [`AnimatedBones::new`]; [`InputError`] also if there is not one set of priorities per clip, and for
-    /// a table of more than 2²⁷ entries.
+    /// [`InputError`] for the errors of [`AnimatedBones::new`], if `priorities` does not have one entry per clip, and for a table
+    /// of more than 2²⁷ entries.
     pub fn new(
         order: &Order,
         set: &ClipSet,
@@ -46,23 +45,23 @@ impl PriorityTable {
         Ok(Self { animated_bones, stride, rows })
     }
 
-    /// The bones that each clip moves.
+    /// Table of the bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.animated_bones
     }
 
-    /// Entries row by row: four priorities of 16 bits each.
+    /// Table entries, row by row. Each entry packs four 16-bit priorities.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.rows
     }
 
-    /// Number of entries of a row.
+    /// Number of entries per row: one per four bones.
     #[cfg(feature = "gpu")]
     pub(crate) fn stride(&self) -> usize {
         self.stride
     }
 
-    /// The priority of a slot in a row, in 65536ths.
+    /// Priority of a slot in a row, 0 to 65535 for 0 to 1.
     pub(crate) fn priority(&self, row: u32, slot: usize) -> u32 {
         self.rows[row as usize * self.stride + slot / 4][slot / 2 % 2] >> (16 * (slot % 2)) & 0xffff
     }

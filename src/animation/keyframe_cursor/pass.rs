@@ -9,7 +9,7 @@ use crate::gpu::bindings::animation::keyframe_cursor as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, ParamsJob, Step, Uniform, Upload};
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
 
-/// Finds the keyframe cursors of instances.
+/// Finds the keyframe cursors of a crowd's instances on the GPU.
 #[derive(Debug, Clone)]
 pub struct KeyframeCursorPass {
     all: Kernel,
@@ -17,19 +17,19 @@ pub struct KeyframeCursorPass {
 }
 
 impl KeyframeCursorPass {
-    /// Compiles the pipelines.
+    /// Compiles the compute pipelines of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { compacted });
         Ok(Self { all: kernel(false)?, compacted: kernel(true)? })
     }
 
-    /// Prepares the cursors of a crowd.
+    /// Prepares a job that finds the cursors of all instances of a crowd.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<KeyframeCursorJob, Error> {
         let params = KeyframeCursorParams::new(clips, crowd);
         let uniform = Uniform::new(gpu, "keyframe cursor", &params)?;
@@ -42,11 +42,11 @@ impl KeyframeCursorPass {
         Ok(ParamsJob { params, uniform, job })
     }
 
-    /// Prepares the cursors of instances with an active bone, at the times that the gate saw. Record it after
-    /// `animation/compact`.
+    /// Prepares a job that finds the cursors of the instances with an active bone, at the times that the gate used. Record the
+    /// job after `animation/compact`.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn prepare_active(
         &self,
         gpu: &Gpu,
@@ -78,7 +78,7 @@ impl KeyframeCursorParams {
     }
 }
 
-/// The listed instances of an active-only job.
+/// Buffers with the list of instances to process, for a job that handles active instances only.
 struct Listed<'a> {
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,
@@ -107,23 +107,25 @@ fn bind(
     group.bind(gpu, kernel)
 }
 
-/// A prepared computation of cursors: set the time, then record.
+/// A prepared computation of cursors. In each frame, set the time, then record.
 pub type KeyframeCursorJob = ParamsJob<KeyframeCursorParams>;
 
 impl KeyframeCursorJob {
-    /// Sets the time of the next submission. `elapsed` is in seconds. At 0, the clip time of each instance is
-    /// its `start`. Begin again at 0, with new starts, every few minutes: `f32` seconds lose precision.
+    /// Sets the time in seconds for the next submission. At `elapsed` 0, the clip time of each instance is its `start`. Restart
+    /// at 0 with new starts every few minutes, because `f32` seconds lose precision.
     ///
     /// # Errors
-    /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`].
+    /// [`crate::InputError`] if `elapsed` is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`]
+    /// for errors of the device.
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
         self.set_through(&mut &*gpu, elapsed)
     }
 
-    /// As [`KeyframeCursorJob::set`], written by `upload`.
+    /// Does the same as [`KeyframeCursorJob::set`], but writes through `upload`. With [`Staged`](crate::gpu::Staged) writes, one
+    /// submission may contain several frames.
     ///
     /// # Errors
-    /// As [`KeyframeCursorJob::set`].
+    /// Same as [`KeyframeCursorJob::set`].
     pub fn set_through(&self, upload: &mut impl Upload, elapsed: f32) -> Result<(), Error> {
         check_elapsed(elapsed)?;
         Ok(upload.uniform(&self.uniform, &KeyframeCursorParams { elapsed, ..self.params })?)

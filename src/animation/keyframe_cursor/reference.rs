@@ -6,8 +6,8 @@ use crate::animation::instance::Wrap;
 use crate::asset::keyframe::{KeyframeCursor, keyframe_cursor};
 use crate::shared::animation::clock::MAX_TURNS;
 
-/// Time inside the clip, in seconds since its start; 0 for a loop whose time is too large to resolve. It computes in the order
-/// of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more exact for large times.
+/// Maps a time in seconds to a time inside a clip of `duration` seconds. The result is 0 for a loop whose time is too large to
+/// resolve. The function computes in the order of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more exact for large times.
 pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     if duration <= 0.0 {
         return 0.0;
@@ -15,7 +15,7 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     if wrap == Wrap::Clamp {
         return time.max(0.0).min(duration);
     }
-    // The comparison is false for NaN.
+    // The comparison is false for NaN, which thus gives 0.
     let is_somewhere = time.abs() < MAX_TURNS * duration;
     if !is_somewhere {
         return 0.0;
@@ -30,18 +30,18 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     inside
 }
 
-/// Cursor of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] per instance. If the clip has fewer
-/// timelines, the kernel leaves the other cursors unchanged; here they are at the start.
+/// Cursor of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] per instance. Cursors beyond the clip's
+/// own timelines are set to the start; the kernel leaves them unchanged instead.
 pub fn cursors(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<KeyframeCursor> {
     let mut cursors = vec![KeyframeCursor::default(); instances.len() * set.timelines_a_clip()];
     cursors_into(set, instances, elapsed, &mut cursors);
     cursors
 }
 
-/// As [`cursors`], without allocation.
+/// Computes the same as [`cursors`], but into an existing slice, without allocation.
 ///
 /// # Panics
-/// For an instance of a clip that the set does not have.
+/// If an instance's clip is not in the set.
 pub fn cursors_into(set: &ClipSet, instances: &[Instance], elapsed: f32, cursors: &mut [KeyframeCursor]) {
     for (instance, cursors) in instances.iter().zip(cursors.chunks_mut(set.timelines_a_clip())) {
         let clip = &set.clips()[instance.clip as usize];

@@ -10,7 +10,7 @@ use crate::shared::animation::local_to_model::LocalToModelParams;
 use crate::shared::animation::order::Slot as PackedSlot;
 use crate::{Error, InputError};
 
-/// Concatenates local transforms.
+/// Computes model matrices from local transforms on the GPU.
 #[derive(Debug, Clone)]
 pub struct LocalToModelPass {
     all: Kernel,
@@ -18,22 +18,23 @@ pub struct LocalToModelPass {
 }
 
 impl LocalToModelPass {
-    /// Compiles the pipelines.
+    /// Compiles the compute pipelines of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |compacted| bindings::kernel(gpu, &bindings::Constants { compacted });
         Ok(Self { all: kernel(false)?, compacted: kernel(true)? })
     }
 
-    /// Prepares the model matrices of a crowd from its local transforms, with one dispatch per level of chains.
+    /// Prepares a job that computes all model matrices of a crowd from its local transforms. It uses one dispatch per level of
+    /// bone chains.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of another skeleton; [`GpuError`].
+    /// [`InputError`] for a crowd of another skeleton; [`GpuError`] for errors of the device.
     pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<Job, Error> {
         let binder = Binder::new(gpu, skeleton, crowd)?;
-        // Placeholders: every slot is walked, so these are not read.
+        // Placeholders: the kernel without lists processes every slot and does not read them.
         let (words, dispatches) = (Buffer::new(gpu, "nothing", 0)?, Buffer::new(gpu, "nothing", 1)?);
         let lists =
             Lists { updated_bones: &words, first_word: 0, instances: &words, dispatches: &dispatches };
@@ -45,11 +46,11 @@ impl LocalToModelPass {
         Ok(Job::new(gpu, "animation/local_to_model", steps)?)
     }
 
-    /// Prepares the model matrices of updated bones; all others stay unchanged.
+    /// Prepares a job that computes the model matrices of updated bones. All other matrices stay unchanged.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of another skeleton, and for a crowd other than that of the active bones;
-    /// [`GpuError`].
+    /// [`InputError`] for a crowd of another skeleton, and if `active` belongs to another crowd; [`GpuError`] for errors of the
+    /// device.
     pub fn prepare_active(
         &self,
         gpu: &Gpu,
@@ -65,8 +66,7 @@ impl LocalToModelPass {
             instances: &active.instances,
             dispatches: &active.dispatches,
         };
-        // Entry 0 of `dispatches` is for one thread per updated instance, so the levels of chains begin at
-        // entry 1.
+        // Entry 0 of `dispatches` is for a dispatch with one thread per updated instance. The levels of chains begin at entry 1.
         let step = |(dispatch, level): (u64, &[u32])| {
             let group = binder.bind(gpu, &self.compacted, level, &lists)?;
             Ok(Step::indirect(&self.compacted, group, active.dispatches.raw(), 16 * dispatch))
@@ -77,16 +77,16 @@ impl LocalToModelPass {
     }
 }
 
-/// The instances and slots that are walked.
+/// Buffers that list the instances and slots to process.
 struct Lists<'a> {
     updated_bones: &'a Buffer<u32>,
-    /// First word of the updated bones.
+    /// Index of the first word of the updated bones in `updated_bones`.
     first_word: u32,
     instances: &'a Buffer<u32>,
     dispatches: &'a Buffer<[u32; 4]>,
 }
 
-/// The resources that all dispatches bind.
+/// Resources that the dispatches of all levels bind.
 struct Binder<'a> {
     order: Order,
     slots: Buffer<PackedSlot>,

@@ -1,10 +1,10 @@
-//! Concatenation into the model's space: the CPU reference of `kernels/animation/local_to_model.wgsl`.
+//! Model matrices from local transforms: the CPU reference of `kernels/animation/local_to_model.wgsl`.
 
 use crate::animation::order::{Order, SlotParent};
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{AFFINE_IDENTITY, Affine, Transform};
 
-/// The model matrix of each bone, from the local transforms.
+/// Model matrix of each bone of one instance, from the bones' local transforms.
 ///
 /// # Panics
 /// If there are fewer local transforms than bones.
@@ -14,11 +14,11 @@ pub fn local_to_model(skeleton: &Skeleton, locals: &[Transform]) -> Vec<Affine> 
     model_matrices
 }
 
-/// As [`local_to_model()`], for one instance after another and without allocation. Each instance has one local transform and
-/// one matrix per bone.
+/// Computes the same as [`local_to_model()`] for many instances, without allocation. The slices hold one instance after another,
+/// with one local transform and one matrix per bone.
 ///
 /// # Panics
-/// If the transforms or matrices of the last instance are incomplete.
+/// If a local transform or matrix of the last instance is missing.
 pub fn local_to_model_into(skeleton: &Skeleton, locals: &[Transform], model_matrices: &mut [Affine]) {
     let bones = skeleton.len();
     for (locals, model_matrices) in locals.chunks(bones).zip(model_matrices.chunks_mut(bones)) {
@@ -30,7 +30,7 @@ pub fn local_to_model_into(skeleton: &Skeleton, locals: &[Transform], model_matr
     }
 }
 
-/// The matrix translation · rotation · scale.
+/// Matrix translation · rotation · scale of a transform.
 pub fn affine(transform: &Transform) -> Affine {
     let [x, y, z, w] = transform.rotation;
     let [sx, sy, sz] = transform.scale;
@@ -43,9 +43,9 @@ pub fn affine(transform: &Transform) -> Affine {
     ]
 }
 
-/// The product `a · b`, which applies b first.
+/// Product `a · b` of two affine matrices. Applied to a point, it applies `b` first.
 pub fn product(a: &Affine, b: &Affine) -> Affine {
-    // Loops over whole rows let compilers vectorize; closures took twice as long.
+    // Loops over whole rows let compilers vectorize. Closures took twice as long.
     let mut product = [[0.0; 4]; 3];
     for (row, [x, y, z, moved]) in product.iter_mut().zip(a) {
         for (column, entry) in row.iter_mut().enumerate() {
@@ -56,11 +56,11 @@ pub fn product(a: &Affine, b: &Affine) -> Affine {
     product
 }
 
-/// Computes the model matrices of one instance, for updated slots only. `updated_bones` holds one bit per slot; if a slot is
-/// set, so are all slots below it.
+/// Computes the model matrices of the updated slots of one instance. `updated_bones` holds one bit per slot. If a slot's bit is
+/// set, the bits of its descendants must be set too.
 ///
 /// # Panics
-/// If there are fewer bits, local transforms or matrices than bones.
+/// If a slice has fewer bits, local transforms or matrices than there are bones.
 pub fn local_to_model_updated(
     order: &Order,
     updated_bones: &[u32],

@@ -1,5 +1,5 @@
-//! Derives the weights from a clip itself (A section 14, future work), by how well each term predicts the error of freezing a
-//! bone from one key to the next.
+//! Derives priority weights from a clip (thesis A, section 14, future work). The weights tell how well each term predicts the
+//! error of freezing a bone from one key to the next.
 
 use super::{Differences, Weights};
 use crate::InputError;
@@ -11,25 +11,27 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::{Affine, Transform};
 
-/// Times at which a frozen bone is examined, as fractions of the way to the next key.
+/// Times at which the error of a frozen bone is measured, as fractions of the time from a key to the next.
 const MOMENTS: [f32; 4] = [0.25, 0.5, 0.75, 1.0];
 
 impl Weights {
-    /// Derives the weights of the first five terms from a clip that plays with `wrap`. It freezes each bone from each of its keys to the next and
-    /// measures the errors in model space. A non-negative least squares fit of the terms to these errors gives the weights. The
-    /// user's term keeps its default weight, and the fit divides the rest. The result is the default weights if nothing moves
-    /// in the clip, or if no term has an effect.
+    /// Derives the weights of the first five terms from a clip that plays with `wrap`. Each bone is frozen from each of its keys
+    /// to the next, and the errors in model space are measured. A non-negative least squares fit of the terms to these errors
+    /// gives the weights.
     ///
-    /// The error is a root mean square of displacements over four moments and all bones. The displaced points lie on the bone's
-    /// axes, at the bone's length from its origin.
+    /// The user term keeps its default weight; the fit divides the remaining weight. If nothing moves in the clip, or if no term
+    /// has an effect, the result is the default weights.
+    ///
+    /// The error is the root mean square of displacements over four moments and all bones. The displaced points lie on the bone's
+    /// axes, at a distance from its origin that equals the bone's length.
     ///
     /// # Errors
-    /// [`InputError`] for a clip of another skeleton.
+    /// [`InputError`] if the clip's number of bones differs from the skeleton's.
     pub fn analyze(skeleton: &Skeleton, clip: &Clip, wrap: Wrap) -> Result<Self, InputError> {
         let differences = Differences::new(skeleton, clip, wrap)?;
         let errors = freezing_errors(skeleton, clip, &differences);
         let largest = errors.iter().copied().fold(0.0, f64::max);
-        // Nothing is left to freeze after the last key.
+        // After its last key, a bone has no motion to freeze.
         let last = differences.keys.iter().map(|key| key.until <= key.time);
         let rows = differences.terms(skeleton).into_iter().zip(&errors).zip(last).filter(|(_, last)| !last);
         let (terms, targets): (Vec<_>, Vec<_>) =
@@ -46,7 +48,7 @@ impl Weights {
     }
 }
 
-/// A frozen bone at one time.
+/// A bone frozen at a key, to be compared with its true pose at a later time.
 struct Probe {
     time: f32,
     key: usize,
@@ -54,7 +56,7 @@ struct Probe {
     frozen: Transform,
 }
 
-/// For each key, the error of freezing its bone until the next key.
+/// Error of freezing each key's bone until the next key: one value per key.
 fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) -> Vec<f64> {
     let mut probes = Vec::new();
     for (index, key) in differences.keys.iter().enumerate().filter(|(_, key)| key.until > key.time) {
@@ -67,7 +69,7 @@ fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) 
             frozen,
         }));
     }
-    // All probes of one time share its pose.
+    // Sort by time, so that all probes of one time share one pose.
     probes.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.key.cmp(&b.key)));
     let lengths = skeleton.lengths();
     let mut squares = vec![0.0; differences.keys.len()];
@@ -82,7 +84,7 @@ fn freezing_errors(skeleton: &Skeleton, clip: &Clip, differences: &Differences) 
     squares.into_iter().map(|square| (square / values).sqrt()).collect()
 }
 
-/// Sum, over all bones, of the squared error that one frozen bone causes.
+/// Sum, over all bones, of the squared error that one frozen bone causes. Only the bone and its descendants have an error.
 fn square_error(
     skeleton: &Skeleton,
     locals: &[Transform],
@@ -109,7 +111,7 @@ fn square_error(
     sum
 }
 
-/// The largest displacement of three points at `length` along the bone's axes.
+/// Largest displacement of three points, which lie on the bone's axes at the distance `length` from its origin.
 pub(super) fn farthest(stale: &Affine, fresh: &Affine, length: f64) -> f64 {
     let off = |axis: usize| {
         let squares = stale.iter().zip(fresh).map(|(stale, fresh)| {
@@ -121,8 +123,8 @@ pub(super) fn farthest(stale: &Affine, fresh: &Affine, length: f64) -> f64 {
     off(0).max(off(1)).max(off(2))
 }
 
-/// The `x ≥ 0` that minimizes `|rows · x − targets|`. With five unknowns, all subsets can be tried: the result is the best of
-/// the solutions in which some unknowns are free and the others are 0.
+/// Returns the `x ≥ 0` that minimizes `|rows · x − targets|`. With five unknowns, all subsets can be tried. In each try, the
+/// unknowns of one subset are free and the others are 0. The best non-negative solution wins.
 pub(super) fn non_negative_least_squares(rows: &[[f64; 5]], targets: &[f64]) -> [f64; 5] {
     let mut normal = [[0.0; 5]; 5];
     let mut right = [0.0; 5];
@@ -132,7 +134,7 @@ pub(super) fn non_negative_least_squares(rows: &[[f64; 5]], targets: &[f64]) -> 
             (0..5).for_each(|j| normal[i][j] += row[i] * row[j]);
         }
     }
-    // |rows · x − targets|² minus a constant.
+    // The value of |rows · x − targets|² minus a constant.
     let cost = |x: &[f64; 5]| -> f64 {
         let product = |i: usize| (0..5).map(|j| normal[i][j] * x[j]).sum::<f64>();
         (0..5).map(|i| x[i] * (product(i) - 2.0 * right[i])).sum()
@@ -192,7 +194,7 @@ mod tests {
         };
         let found = non_negative_least_squares(&rows, &of(&truth));
         assert!(found.iter().zip(truth).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
-        // The true negative value is clamped to 0, and no other nearby x ≥ 0 is better.
+        // The negative value is clamped to 0, and no nearby x ≥ 0 is better.
         let targets = of(&[1.0, -0.5, 0.0, 0.3, 0.0]);
         let found = non_negative_least_squares(&rows, &targets);
         let cost = |x: &[f64; 5]| of(x).iter().zip(&targets).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
@@ -230,7 +232,8 @@ mod tests {
         Some(Keys { times, values, interpolation: Interpolation::Linear })
     }
 
-    /// Computed by hand: the middle bone moves 4 m in a second, so it and its child are 1, 2, 3 and 4 m off.
+    /// Compares with values computed by hand. The middle bone moves 4 m in a second, so the frozen bone and its child are 1, 2, 3
+    /// and 4 m off.
     #[test]
     fn the_error_of_freezing_is_the_one_computed_by_hand() {
         let (skeleton, clip) = chain([keys(&[0.0, 1.0], &[[0.0; 4], [4.0, 0.0, 0.0, 0.0]]), None, None]);
@@ -240,7 +243,7 @@ mod tests {
         assert!((errors[0] - expected).abs() < 1e-6 && errors[1] == 0.0, "{errors:?} {expected}");
     }
 
-    /// If only one part moves, and its change is proportional to the error, only its weight remains.
+    /// If only the translation changes, in proportion to the error, then only its weight remains.
     #[test]
     fn the_part_that_moves_gets_the_weight() {
         let distances = [0.0, 1.0, 1.5, 4.0, 0.0].map(|x| [x, 0.0, 0.0, 0.0]);
@@ -259,7 +262,7 @@ mod tests {
         assert_eq!(Weights::analyze(&skeleton, &clip, Wrap::Loop), Ok(Weights::default()));
     }
 
-    /// The fit explains the errors better than equal weights do.
+    /// Checks that the fitted weights explain the errors better than equal weights do.
     #[test]
     fn the_creatures_weights_fit_better_than_equal_ones() {
         let model = creature().expect("valid");
@@ -269,7 +272,7 @@ mod tests {
             let differences = Differences::new(&model.skeleton, clip, Wrap::Loop).expect("fits");
             let terms = differences.terms(&model.skeleton);
             let errors = freezing_errors(&model.skeleton, clip, &differences);
-            // Each with its best scale.
+            // Squared misfit of the weighted terms to the errors, after scaling them by the best factor.
             let misfit = |weights: &[f64]| {
                 let sums: Vec<f64> =
                     terms.iter().map(|row| row.iter().zip(weights).map(|(a, b)| a * b).sum()).collect();

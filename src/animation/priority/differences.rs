@@ -1,4 +1,4 @@
-//! Differences between each key and the next: the first five terms of priorities.
+//! Differences between each key and the next key. They give the first five terms of priorities.
 
 use super::NOISE;
 use crate::InputError;
@@ -10,18 +10,18 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 use crate::asset::transform::Transform;
 
-/// The change from a key to the next.
+/// Change of a bone's transform from one key to the next.
 pub(super) struct Difference {
     pub(super) bone: u32,
     pub(super) key: u32,
     pub(super) time: f32,
-    /// Time of the next key, or the key's own time if there is none.
+    /// Time of the bone's next key in seconds. If there is none, it equals `time`.
     pub(super) until: f32,
-    /// Changes in units of the model, in radians, and in factors of the scale at rest.
+    /// Changes of translation (in units of the model), rotation (in radians) and scale (as a factor of the scale at rest).
     pub(super) change: [f64; 3],
 }
 
-/// The changes of all keys: bone by bone, key by key.
+/// Changes at all keys of a clip, bone by bone and key by key.
 pub(super) struct Differences {
     pub(super) keys: Vec<Difference>,
     pub(super) offsets: Vec<u32>,
@@ -52,7 +52,7 @@ impl Differences {
         Ok(all)
     }
 
-    /// The first five terms of each key.
+    /// First five terms of each key's priority, in the order of [`TERMS`](super::TERMS): all but the user term.
     pub(super) fn terms(&self, skeleton: &Skeleton) -> Vec<[f64; 5]> {
         let largest = |part: usize| self.keys.iter().map(|key| key.change[part]).fold(0.0, f64::max);
         let least = [NOISE * self.size, NOISE, NOISE];
@@ -74,7 +74,7 @@ impl Differences {
     }
 }
 
-/// The distinct times of a bone's keys.
+/// Key times of a bone's translation, rotation and scale tracks, in seconds: sorted, without duplicates.
 pub fn key_times(clip: &Clip, bone: usize) -> Vec<f32> {
     let tracks = TransformPart::ALL.map(|part| clip.times_of(clip.track(bone, part)));
     let mut times = tracks.concat();
@@ -96,15 +96,15 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
     a.distance(b)
 }
 
-/// The angle `2·acos(min(1, |a·b|))`, computed from the chord, which is exact for small angles. Through the cosine, rounding
-/// would give 0.001 rad.
+/// Rotation angle `2·acos(min(1, |a·b|))` between two quaternions, in radians. It is computed from the chord, which is exact for
+/// small angles. With the cosine, rounding would give an error of 0.001 rad.
 fn angle(a: [f32; 4], b: [f32; 4]) -> f64 {
     let [a, b] = [a, b].map(|q| glam::DVec4::from(q.map(f64::from)).normalize());
     let b = if a.dot(b) < 0.0 { -b } else { b };
     4.0 * libm::asin((a.distance(b) / 2.0).min(1.0))
 }
 
-/// Diagonal of the box around all bones at rest, in units of the model.
+/// Size of a skeleton: the diagonal of the box around all bone origins at rest, in units of the model.
 pub fn size(skeleton: &Skeleton) -> f64 {
     let model_matrices = local_to_model(skeleton, &skeleton.rest());
     let positions = model_matrices.iter().map(|model| glam::DVec3::from(model.map(|row| f64::from(row[3]))));

@@ -10,10 +10,10 @@ use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// Largest unevenness or shear of the scales above a root whose yaw is taken.
+/// Largest relative unevenness or shear of the ancestors' scale that is accepted if the yaw is taken.
 const UNEVEN: f64 = 1e-4;
 
-/// Smallest twist part of a quaternion that defines a yaw. Below it, the previous yaw counts.
+/// Smallest squared length of a quaternion's twist at which its yaw is defined. Below it, the previous yaw is kept.
 const UPSIDE_DOWN: f64 = 1e-12;
 
 pub(super) fn extract(
@@ -45,7 +45,7 @@ pub(super) fn extract(
     Ok((clip.replaced(bone, translation, rotation)?, motion))
 }
 
-/// Transform from the space of the bone's parent to model space.
+/// Returns the transform from the space of the bone's parent to model space. Returns an error if an ancestor moves.
 fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, InputError> {
     let mut above = DAffine3::IDENTITY;
     let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
@@ -62,7 +62,7 @@ fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, Inpu
         above = sample_bone(clip, ancestor, 0.0, RotationPath::Slerp).wide() * above;
     }
     let matrix = above.matrix3;
-    // Refuses also determinants that only rounding keeps from being zero.
+    // Also refuses determinants that would be zero without rounding.
     let size = matrix.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     if matrix.determinant().abs() <= 1e-9 * size.powi(3) {
         return Err(wrong_scale(skeleton, clip, bone, "must not make the bones below it flat"));
@@ -70,14 +70,15 @@ fn above(skeleton: &Skeleton, clip: &Clip, bone: usize) -> Result<DAffine3, Inpu
     Ok(above)
 }
 
-/// Error for a bad scale above `bone`: it names the bone that mirrors, or else the one with the most uneven scale.
+/// Returns the error for a bad scale above `bone`. It names the ancestor that mirrors or, if there is none, the ancestor with the
+/// most uneven scale.
 fn wrong_scale(skeleton: &Skeleton, clip: &Clip, bone: usize, bound: &str) -> InputError {
     let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
     let above = std::iter::successors(parent(bone as u32), |bone| parent(*bone));
     let scales: Vec<(u32, [f32; 3])> =
         above.map(|bone| (bone, sample_bone(clip, bone as usize, 0.0, RotationPath::Slerp).scale)).collect();
     let mirrors = |scale: &[f32; 3]| scale.iter().product::<f32>() < 0.0;
-    // Ratio of the smallest to the largest scale factor: 0 for a flat scale, 1 for an even one.
+    // Ratio of the smallest to the largest scale factor: 0 for a flat scale, 1 for a uniform scale.
     let evenness = |scale: &[f32; 3]| {
         let sizes = scale.map(f32::abs);
         sizes.into_iter().fold(f32::MAX, f32::min) / sizes.into_iter().fold(f32::MIN_POSITIVE, f32::max)
@@ -99,8 +100,8 @@ fn moves(clip: &Clip, track: &Track) -> bool {
     track.keys > 1 && (bends || differ)
 }
 
-/// Returns the translation that is taken, in model space since the start, and the keys of the rest. Both are linear in the
-/// values, so that every interpolation stays the same.
+/// Returns the keys of the translation that is taken, in model space since the start, and the keys of the remaining translation.
+/// Both are linear in the original values, so they keep the interpolation of the track.
 fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Taken) -> (Keys, Option<Keys>) {
     let part = |is_taken: bool| f64::from(u8::from(is_taken));
     let (horizontal, vertical) = (part(taken.horizontal), part(taken.vertical));
@@ -121,7 +122,8 @@ fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Tak
     (path, moves.then_some(rest))
 }
 
-/// Returns the yaw in radians since the start, and the keys of the remaining rotation; `None` if the yaw never changes.
+/// Returns the yaw in radians since the clip's start, and the keys of the remaining rotation. Returns `None` if the track has no
+/// two different key times.
 fn split_turn(
     skeleton: &Skeleton,
     clip: &Clip,
@@ -161,7 +163,7 @@ fn split_turn(
     Ok(Some((turns, Keys { times, values, interpolation: Interpolation::Linear })))
 }
 
-/// Rotations at all keys, on both sides of jumps, and in between where the interpolation needs it.
+/// Samples of a rotation track: at all keys, on both sides of jumps, and between keys where the interpolation needs it.
 fn samples(keys: &Keys) -> Vec<(f32, [f32; 4])> {
     let is_spline = keys.interpolation == Interpolation::CubicSpline;
     let mut samples: Vec<(f32, [f32; 4])> = Vec::new();
@@ -197,7 +199,7 @@ fn samples(keys: &Keys) -> Vec<(f32, [f32; 4])> {
     samples
 }
 
-/// Number of pieces so that none rotates by more than [`PIECE`].
+/// Number of pieces of a segment such that no piece rotates by more than [`PIECE`].
 fn pieces(before: [f32; 4], after: [f32; 4]) -> u32 {
     let cosine: f64 = before.iter().zip(after).map(|(a, b)| f64::from(*a) * f64::from(b)).sum();
     ((2.0 * cosine.abs().min(1.0).acos() / PIECE).ceil() as u32).max(1)

@@ -1,11 +1,11 @@
-//! Rotations about the vertical with translations, in double precision, so that positions stay exact after an
-//! hour of loops.
+//! Rigid motions: a rotation about the vertical and a translation. They use double precision, so that positions stay exact after
+//! an hour of loops.
 
 use glam::{DQuat, DVec3};
 
 use crate::asset::transform::Transform;
 
-/// A rotation about +Y, followed by a translation.
+/// A rotation by `turn` radians about +Y, followed by a translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rigid {
     turn: f64,
@@ -15,13 +15,13 @@ pub(super) struct Rigid {
 impl Rigid {
     const IDENTITY: Self = Self { turn: 0.0, translation: DVec3::ZERO };
 
-    /// A rotation about the vertical through a pivot, followed by a translation.
+    /// Rotation by `turn` radians about the vertical through `pivot`, followed by a translation.
     pub fn about(pivot: [f64; 3], turn: f64, translation: [f64; 3]) -> Self {
         let [pivot, translation] = [pivot, translation].map(DVec3::from);
         Self { turn, translation: pivot + translation - DQuat::from_rotation_y(turn) * pivot }
     }
 
-    /// This motion followed by `next`, which is in the space that results from this one.
+    /// This motion, followed by `next`. `next` is in the space that this motion leads to.
     pub fn then(self, next: Self) -> Self {
         let turned = DQuat::from_rotation_y(self.turn) * next.translation;
         Self { turn: self.turn + next.turn, translation: self.translation + turned }
@@ -32,7 +32,7 @@ impl Rigid {
         Self { turn: -self.turn, translation: back }
     }
 
-    /// This motion repeated `count` times; a negative count repeats its inverse.
+    /// This motion, repeated `count` times. A negative count repeats the inverse.
     pub fn power(self, count: i64) -> Self {
         let mut square = if count < 0 { self.inverse() } else { self };
         let (mut left, mut product) = (count.unsigned_abs(), Self::IDENTITY);

@@ -1,8 +1,8 @@
-//! Sampling of clips: every bone's local transform at a time (glTF 2.0, appendix C).
+//! Sampling of clips: computes the local transform of every bone at a time (glTF 2.0, appendix C).
 //!
 //! Rotations between linear keys take the shortest arc at constant speed (slerp). Eberly's polynomial (Eberly 2011,
-//! `docs/sources.md`) evaluates it without `sin` and `acos`. The arc is halved first, so that five terms keep the result within
-//! [`SLERP_BOUND`] of the true rotation for any two keys.
+//! `docs/sources.md`) evaluates the slerp without `sin` and `acos`. The arc is halved first. Five terms then keep the result
+//! within [`SLERP_BOUND`] of the true rotation for any two keys.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -12,21 +12,27 @@ pub use crate::shared::animation::rotation::{SLERP_U, SLERP_V};
 #[cfg(feature = "gpu")]
 pub use pass::SamplePass;
 
-/// Largest angle, in radians, between a sampled rotation and the true one, for linear keys. The polynomial alone is within
-/// 4e-8; the rest is `f32` rounding of keys, products and sums.
+/// Largest angle, in radians, between a sampled rotation and the true rotation, for linear keys. The polynomial contributes at
+/// most 4e-8. Rounding of keys, products and sums to `f32` contributes the remaining error.
 pub const SLERP_BOUND: f32 = 1e-6;
 
-/// Largest allowed difference between a component and the reference at the same cursor, on any device, relative to the largest
-/// value (at least 1).
+/// Largest allowed difference between a component and the CPU reference at the same cursor, on any device. It is relative to the
+/// largest value (at least 1).
 ///
-/// Let ε = 2⁻²⁴ (`+ − ×` round by up to 2ε, `inverseSqrt` by 4ε). A spline adds four products with weights of at most 1.15,
-/// each with 8ε: 40ε. The cosine of a slerp carries 8ε, its inverse 8ε, the cosine of half the angle 14ε. Each of five terms
-/// adds 6ε, times at most 0.3: 16ε per weight, for two or three weights: 50ε. Normalizing adds 16ε. 160ε < 1e-5.
+/// Let ε = 2⁻²⁴ (`+ − ×` round by up to 2ε, `inverseSqrt` by 4ε).
+///
+/// - A spline adds four products with weights of at most 1.15, each with an error of 8ε: 40ε.
+/// - In a slerp, the cosine and its inverse have an error of 8ε each, and the cosine of half the angle 14ε. Each of five terms
+///   adds 6ε, times at most 0.3: 16ε per weight, for two or three weights: 50ε.
+/// - Normalizing adds 16ε.
+///
+/// The total is below 160ε < 1e-5.
 pub const SAMPLE_BOUND: f32 = 1e-5;
 
-/// Factor by which the bound grows with each layer above the base.
+/// Factor by which [`SAMPLE_BOUND`] grows with each layer above the base.
 ///
-/// A blend of two vectors with error e has the error e and 12ε of rounding (weight times mask 2ε, 1 minus that 4ε, both
-/// products and their sum 6ε). The blend of two unit quaternions less than 90° apart has a length of at least √½. Normalizing
-/// therefore enlarges its error by at most √2 and adds 16ε: √2·e + 33ε, where 33ε = 2e-6 is a fifth of the smallest e.
+/// A blend of two vectors with error e has the error e plus 12ε of rounding: 2ε for weight times mask, 4ε for 1 minus this
+/// product, and 6ε for both products and their sum. The blend of two unit quaternions less than 90° apart has a length of at
+/// least √½. Normalizing therefore multiplies its error by at most √2 and adds 16ε. The result is √2·e + 33ε, where 33ε = 2e-6 is
+/// a fifth of the smallest e.
 pub const LAYER_GROWTH: f32 = 1.65;

@@ -11,10 +11,10 @@ use crate::{Error, InputError};
 
 impl SeenAs<[u32; 2]> for KeyframeCursor {}
 
-/// Samples bones.
+/// Samples the local transforms of a crowd's bones on the GPU.
 #[derive(Debug, Clone)]
 pub struct SamplePass {
-    // One kernel for sets without splines, one for sets with splines.
+    // Two kernels: the first for clip sets without splines, the second for sets with splines.
     all: [Kernel; 2],
     compacted: [Kernel; 2],
     is_layered: bool,
@@ -22,19 +22,19 @@ pub struct SamplePass {
 }
 
 impl SamplePass {
-    /// Compiles the pipelines for crowds of one layer.
+    /// Compiles the pipelines for crowds with one layer. `path` is the rotation path between keys.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu, path: RotationPath) -> Result<Self, GpuError> {
         Self::compile(gpu, path, false)
     }
 
-    /// Compiles the pipelines for crowds with any number of layers. `path` applies between keys; between layers
+    /// Compiles the pipelines for crowds with any number of layers. `path` is the rotation path between keys. Between layers,
     /// rotations are always blended along the chord.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn layered(gpu: &Gpu, path: RotationPath) -> Result<Self, GpuError> {
         Self::compile(gpu, path, true)
     }
@@ -48,11 +48,11 @@ impl SamplePass {
         Ok(Self { all: kernels(false)?, compacted: kernels(true)?, is_layered, path })
     }
 
-    /// Prepares the sampling of every bone of every instance, at the crowd's cursors.
+    /// Prepares a job that samples every bone of every instance, at the crowd's keyframe cursors.
     ///
     /// # Errors
-    /// [`InputError`] for a crowd of several layers unless the pass is [`SamplePass::layered`], and for a crowd
-    /// with another rotation path ([`Crowd::path`]); [`GpuError`].
+    /// [`InputError`] if the crowd has several layers and the pass is not [`SamplePass::layered`], and if the crowd has another
+    /// rotation path ([`Crowd::path`]); [`GpuError`] for errors of the device.
     pub fn prepare(&self, gpu: &Gpu, clips: &ClipBuffers, crowd: &Crowd) -> Result<Job, Error> {
         self.check(crowd)?;
         let pairs = Buffer::new(gpu, "no pairs", 0)?;
@@ -62,10 +62,11 @@ impl SamplePass {
         Ok(Job::spread(gpu, "animation/sample", kernel, group, crowd.pairs() as u32)?)
     }
 
-    /// Prepares the sampling of the active pairs; all other local transforms stay unchanged.
+    /// Prepares a job that samples the active (instance, bone) pairs. All other local transforms stay unchanged.
     ///
     /// # Errors
-    /// As [`SamplePass::prepare`], and [`InputError`] for pairs of another crowd.
+    /// [`InputError`] for the errors of [`SamplePass::prepare`], and if `active` belongs to another crowd; [`GpuError`] for
+    /// errors of the device.
     pub fn prepare_active(
         &self,
         gpu: &Gpu,

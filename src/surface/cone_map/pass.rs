@@ -9,38 +9,38 @@ use crate::surface::height_batch::{HeightMapBatch, REMEDY};
 use crate::surface::height_pyramid::Pyramids;
 use crate::{Error, InputError};
 
-/// The cone maps of a batch, one after another.
+/// Cone maps of a batch of height maps on the device, one map after another.
 #[derive(Debug, Clone)]
 pub struct Cones {
-    /// Height of the highest corner, and radius, of each cell, in rows of `pitch` cones.
+    /// Per cell, the height of the highest corner and the cone radius. Each row of a map has `pitch` cones.
     pub cones: Buffer<[f32; 2]>,
-    /// Cells along x and y.
+    /// Number of cells along x and y.
     pub cells: [u32; 2],
-    /// Cones per row, padded so that rows can be copied to a texture.
+    /// Number of cones per row, padded so that rows can be copied to a texture.
     pub pitch: u32,
-    /// Number of maps.
+    /// Number of cone maps.
     pub count: u32,
 }
 
-/// Computes cone maps.
+/// Computes cone maps of height maps on the GPU.
 #[derive(Debug, Clone)]
 pub struct ConeMapPass {
     kernel: Kernel,
 }
 
 impl ConeMapPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Allocates the cone maps of a batch with these pyramids.
+    /// Allocates cone maps for a batch of height maps with these pyramids.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn output(&self, gpu: &Gpu, pyramids: &Pyramids) -> Result<Cones, GpuError> {
         let cells = pyramids.layout.cells;
         // Rows of a texture copy must start at multiples of 256 bytes.
@@ -50,10 +50,10 @@ impl ConeMapPass {
         Ok(Cones { cones, cells, pitch, count: pyramids.count })
     }
 
-    /// Prepares the cone maps of a batch from its pyramids, with the pyramids' address mode.
+    /// Prepares a job that computes the cone maps of a batch from its height pyramids. It uses the pyramids' address mode.
     ///
     /// # Errors
-    /// [`InputError`] when pyramids or cones do not belong to the batch; [`GpuError`].
+    /// [`InputError`] if the pyramids or cones do not match the batch in size or number; [`GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -6,7 +6,8 @@ use crate::shared::surface::cone_map::{LEAST_RISE, NARROWING, OPENING, WIDEST};
 use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::{Address, HeightMap};
 
-/// Highest corner and cone radius of every cell, row by row, from the map and its pyramid.
+/// Cone map of a height map, from the map and its pyramid. For each cell, row by row, it has the height of the highest corner and
+/// the cone radius.
 pub fn cone_map(map: &HeightMap, pyramid: &[f32], address: Address) -> Vec<[f32; 2]> {
     let layout = PyramidLayout::new([map.width(), map.height()], address);
     let [columns, rows] = layout.cells;
@@ -46,7 +47,7 @@ impl Search<'_> {
             .map(|[dx, dy]| self.map.texel(first[0] + dx, first[1] + dy, self.address))
     }
 
-    /// Narrows `radius` by the nodes of one periodic image of the tile; `cell` is relative to that image.
+    /// Returns `radius`, narrowed by the nodes of one periodic image of the tile. `cell` is relative to that image.
     fn narrowed(&self, cell: [i32; 2], own: f32, radius: f32) -> f32 {
         let cells = self.layout.cells.map(|edge| edge as i32);
         let top = self.layout.levels - 1;
@@ -106,8 +107,7 @@ fn leaf_radius(corners: [f32; 4], offset: [i32; 2], own: f32) -> f32 {
     let away = offset.map(|at| at.abs() as f32);
     let center = away.map(|away| (away - 0.5).max(0.0));
     let length = (center[0] * center[0] + center[1] * center[1]).sqrt().max(0.5);
-    // Offsets along axis `i` of the leaf's lower and upper edge, projected onto the line to the leaf's
-    // center.
+    // Distances of the leaf's lower and upper edge along axis `i`, projected onto the line to the leaf's center.
     let edges = |i: usize| {
         let direction = center[i] / length;
         let (near, far) = ((away[i] - 1.0).max(0.0) * direction, away[i] * direction);

@@ -1,5 +1,6 @@
-//! Max-mip pyramids of height maps (B section 2.3.4). A leaf is the highest corner of a bilinear cell, and a node is the
-//! highest of its four children. `quadtree` traverses pyramids, and cone maps are computed from them.
+//! Max-mip pyramids of height maps (thesis B, section 2.3.4). A leaf of a pyramid is the height of the highest corner of a
+//! bilinear cell. Every other node is the maximum of its four children. The method `quadtree` traverses pyramids, and cone maps
+//! are computed from them.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -10,23 +11,25 @@ pub use pass::{HeightPyramidPass, Pyramids};
 
 use crate::surface::map::Address;
 
-/// Layout of a pyramid's nodes. All levels share one plane, with rows padded so that the plane can be copied to a texture.
+/// Memory layout of a pyramid's nodes. All levels share one plane of nodes. Its rows are padded so that the plane can be copied
+/// to a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PyramidLayout {
-    /// Texels of the map along x and y.
+    /// Number of texels of the height map along x and y.
     pub size: [u32; 2],
-    /// Bilinear cells along x and y: equal to texels with [`Address::Wrap`], one more per axis with [`Address::Clamp`].
+    /// Number of bilinear cells along x and y. With [`Address::Wrap`] it equals the number of texels; with [`Address::Clamp`] it
+    /// is one more per axis.
     pub cells: [u32; 2],
-    /// Nodes per row of the plane.
+    /// Number of nodes per row of the plane, including padding.
     pub pitch: u32,
-    /// Rows of the plane.
+    /// Number of rows of the plane.
     pub rows: u32,
-    /// Number of levels, from single cells to a single node.
+    /// Number of levels: from level 0 with one node per cell, to the last level with a single node.
     pub levels: u32,
 }
 
 impl PyramidLayout {
-    /// Layout for a map of `size` texels.
+    /// Computes the layout for a height map of `size` texels.
     pub fn new(size: [u32; 2], address: Address) -> Self {
         let cells = match address {
             Address::Wrap => size,
@@ -57,13 +60,14 @@ impl PyramidLayout {
         self.len() == 0
     }
 
-    /// Index of a node in the plane. Elements that belong to no level are padding and may have any value.
+    /// Index of a node in the plane, from its level and its column and row in that level. Elements of the plane that belong to no
+    /// level are padding and may have any value.
     pub fn index(&self, level: u32, node: [u32; 2]) -> usize {
         let first = self.first(level);
         ((first[1] + node[1]) * self.pitch + first[0] + node[0]) as usize
     }
 
-    /// Column and row of a level's first node.
+    /// Column and row in the plane of a level's first node.
     fn first(&self, level: u32) -> [u32; 2] {
         match level.checked_sub(1) {
             None => [0, 0],

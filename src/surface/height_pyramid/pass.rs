@@ -10,25 +10,25 @@ use crate::surface::height_batch::{HeightMapBatch, REMEDY};
 use crate::surface::map::Address;
 use crate::{Error, InputError};
 
-/// The pyramids of a batch of height maps, one after another.
+/// Max-mip pyramids of a batch of height maps on the device, one pyramid after another.
 #[derive(Debug, Clone)]
 pub struct Pyramids {
-    /// Nodes of all pyramids, [`PyramidLayout::len`] nodes per pyramid. [`PyramidLayout::index`] gives a node's index within
-    /// its pyramid.
+    /// Nodes of all pyramids, [`PyramidLayout::len`] per pyramid. [`PyramidLayout::index`] gives the index of a node within its
+    /// pyramid.
     pub nodes: Buffer<f32>,
-    /// Layout of each pyramid.
+    /// Memory layout of each pyramid.
     pub layout: PyramidLayout,
-    /// Address mode of the maps.
+    /// Address mode that the pyramids are computed for.
     pub address: Address,
     /// Number of pyramids.
     pub count: u32,
 }
 
 impl Pyramids {
-    /// Allocates the pyramids of a batch.
+    /// Allocates the pyramids of a batch of height maps.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, maps: &HeightMapBatch, address: Address) -> Result<Self, GpuError> {
         let layout = PyramidLayout::new(maps.size, address);
         let nodes = Buffer::new(gpu, "pyramids", layout.len() * maps.count as usize)
@@ -36,7 +36,7 @@ impl Pyramids {
         Ok(Self { nodes, layout, address, count: maps.count })
     }
 
-    /// Refuses pyramids that do not belong to a batch.
+    /// Returns an error if the pyramids differ from a batch of height maps in size or number.
     pub(crate) fn check(&self, maps: &HeightMapBatch) -> Result<(), InputError> {
         if self.layout.size != maps.size {
             let bound = format!("must be {:?} texels, as the height maps'", maps.size);
@@ -46,25 +46,25 @@ impl Pyramids {
     }
 }
 
-/// Computes pyramids, one level per dispatch.
+/// Computes max-mip pyramids on the GPU, with one dispatch per level.
 #[derive(Debug, Clone)]
 pub struct HeightPyramidPass {
     kernel: Kernel,
 }
 
 impl HeightPyramidPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the pyramids of a batch.
+    /// Prepares a job that computes the pyramids of a batch of height maps.
     ///
     /// # Errors
-    /// [`InputError`] when the pyramids do not belong to the batch; [`GpuError`].
+    /// [`InputError`] if the pyramids differ from the batch in size or number; [`GpuError`] for errors of the device.
     pub fn prepare(&self, gpu: &Gpu, maps: &HeightMapBatch, pyramids: &Pyramids) -> Result<Job, Error> {
         pyramids.check(maps)?;
         let layout = pyramids.layout;

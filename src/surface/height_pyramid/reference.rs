@@ -3,7 +3,7 @@
 use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::{Address, HeightMap};
 
-/// Pyramid of a map in the layout of [`PyramidLayout`], with 0 in the padding.
+/// Max-mip pyramid of a height map, in the layout of [`PyramidLayout`]. The padding is 0.
 pub fn height_pyramid(map: &HeightMap, address: Address) -> Vec<f32> {
     let layout = PyramidLayout::new([map.width(), map.height()], address);
     let mut pyramid = vec![0.0; layout.len()];

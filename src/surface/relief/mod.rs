@@ -1,7 +1,8 @@
-//! Ray-height methods: the methods, their rays, march parameters and results (B section 3.1).
+//! Relief methods: algorithms that find where a ray meets a height map, with their rays, parameters and results (thesis B,
+//! section 3.1).
 //!
-//! Material shaders import the methods from `wgsl/surface/`; `relievo shaders` writes them as flat WGSL. The kernel in this
-//! folder runs them on lists of rays.
+//! Material shaders import the methods from `wgsl/surface/`. The command `relievo shaders` writes the methods as flat WGSL. The
+//! kernel in this folder runs the methods on lists of rays.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -19,44 +20,45 @@ pub use crate::shared::surface::ray::{SurfaceHit as ReliefHit, SurfaceRay as Rel
 use crate::shared::surface::{linear, ray, trace};
 use crate::surface::map::Address;
 
-/// Smallest cosine to the normal with which rays are marched: 89.55° from the normal.
+/// Smallest cosine between a traced ray and the normal: 89.55° from the normal. Flatter rays are traced with this cosine.
 pub const LEAST_COSINE: f32 = ray::SURFACE_LEAST_COSINE;
 
-/// Largest number of linear steps of a march.
+/// Largest number of linear search steps per ray.
 pub const MAX_STEPS: u32 = linear::SURFACE_MAX_STEPS;
 
-/// Largest number of binary steps of a march.
+/// Largest number of binary search steps per ray.
 pub const MAX_BINARY: u32 = linear::SURFACE_MAX_BINARY;
 
-/// Largest depth of a relief, in uv units.
+/// Largest depth of a relief, in uv units (1 = one tile).
 pub const MAX_SCALE: f32 = 1.0;
 
-/// The method that finds the surface.
+/// Method that finds the point where a ray meets the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[repr(u32)]
 pub enum ReliefMethod {
-    /// No mapping: the polygon's own texture coordinates.
+    /// No relief: the polygon's own texture coordinates.
     Plain = trace::SURFACE_PLAIN,
-    /// Parallax mapping: one height sample and one shift (Kaneko 2001).
+    /// Parallax mapping: shifts the texture coordinates once, by one height sample (Kaneko 2001).
     ///
-    /// **Decided**: the bias is −`plane` · `scale`. B takes +½ · `scale` (3.1.1), but wants heights remapped around 0, which
-    /// needs the minus.
+    /// **Decided**: the bias is −`plane` · `scale`. Thesis B takes +½ · `scale` (3.1.1), but wants heights remapped around 0,
+    /// which needs the minus sign.
     Parallax = trace::SURFACE_PARALLAX,
-    /// Parallax mapping with Welsh's offset limiting.
+    /// Parallax mapping with Welsh's offset limiting, which shifts less at flat angles.
     ParallaxLimited = trace::SURFACE_PARALLAX_LIMITED,
-    /// Linear search, then binary search (Policarpo 2005; B table 4.4).
+    /// Linear search, then binary search (Policarpo 2005; thesis B, table 4.4).
     Relief = trace::SURFACE_RELIEF,
-    /// Linear search, then intersection with the segment between the last two samples (Tatarchuk 2006; B section 2.3.1).
+    /// Linear search, then intersection with the segment between the last two samples (Tatarchuk 2006; thesis B, section 2.3.1).
     Occlusion = trace::SURFACE_OCCLUSION,
-    /// Relaxed cones that are safe under bilinear filtering, then binary search. Needs a cone map.
+    /// Steps over relaxed cones that are safe under bilinear filtering, then binary search. Needs a cone map.
     Cone = trace::SURFACE_CONE,
-    /// Max-mip traversal with exact bilinear patches (Tevs 2008; B section 2.3.4). Needs a height pyramid.
+    /// Traversal of a max-mip pyramid, with exact intersection of bilinear patches (Tevs 2008; thesis B, section 2.3.4). Needs a
+    /// height pyramid.
     Quadtree = trace::SURFACE_QUADTREE,
 }
 
 impl ReliefMethod {
-    /// All methods, in the order of their values in the shaders.
+    /// All methods, in the order of their numbers in the shaders.
     pub const ALL: [Self; 7] = [
         Self::Plain,
         Self::Parallax,
@@ -67,7 +69,7 @@ impl ReliefMethod {
         Self::Quadtree,
     ];
 
-    /// Name in options and reports.
+    /// Name of the method in options and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plain => "plain",
@@ -80,12 +82,12 @@ impl ReliefMethod {
         }
     }
 
-    /// Value in the shaders.
+    /// Number of the method in the shaders.
     pub fn code(self) -> u32 {
         self as u32
     }
 
-    /// Whether the method's cost and error depend on the numbers of steps.
+    /// Returns whether the method's cost and error depend on the numbers of search steps.
     pub fn is_stepped(self) -> bool {
         matches!(self, Self::Relief | Self::Occlusion)
     }
@@ -103,8 +105,8 @@ impl FromStr for ReliefMethod {
 }
 
 impl ReliefRay {
-    /// The ray through a polygon at `uv`. `view` is the unit vector towards the eye in tangent space. `scale` is the depth of
-    /// the relief in uv units. `plane` is the polygon's height in the volume, 0 (bottom) to 1 (top).
+    /// Creates the ray that meets a polygon at `uv`. `view` is the unit vector towards the eye in tangent space. `scale` is the
+    /// depth of the relief in uv units. `plane` is the polygon's height in the relief, 0 (bottom) to 1 (top).
     pub fn new(uv: [f32; 2], view: [f32; 3], scale: f32, plane: f32) -> Self {
         let steepness = -scale / view[2].max(LEAST_COSINE);
         let slope = [view[0] * steepness, view[1] * steepness];
@@ -113,24 +115,24 @@ impl ReliefRay {
         Self { origin, slope, cosine: view[2], polygon }
     }
 
-    /// uv of the ray at a parameter.
+    /// Texture coordinates of the ray at a parameter, 0 (top of the relief) to 1 (bottom).
     pub fn at(&self, parameter: f32) -> [f32; 2] {
         [self.origin[0] + parameter * self.slope[0], self.origin[1] + parameter * self.slope[1]]
     }
 }
 
-/// Parameters of a march.
+/// Parameters of the search along a ray (ray march).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct March {
-    /// Address mode of the map. An acceleration map is computed for one address mode.
+    /// Address mode of the height map. An acceleration map can be used only with the address mode it was computed for.
     pub address: Address,
-    /// Numbers of linear steps for rays straight down and at the horizon, each 1 to [`MAX_STEPS`]; in between ⌈mix(min, max, 1
-    /// − V.z)⌉.
+    /// Numbers of linear steps for rays straight down (min) and for rays at the horizon (max), each 1 to [`MAX_STEPS`]. The
+    /// second must not be smaller. For other rays the number is ⌈mix(min, max, 1 − V.z)⌉, where V.z is the ray's cosine.
     ///
-    /// **Decided**: the number grows with the angle from the normal, as in B's text (3.1.2). B's table 4.4 takes 10 steps at
-    /// every angle.
+    /// **Decided**: the number of steps grows with the angle from the normal, as in the text of thesis B (3.1.2). Its table 4.4
+    /// takes 10 steps at every angle.
     pub steps: [u32; 2],
-    /// Number of binary steps after the linear steps or the cones, up to [`MAX_BINARY`].
+    /// Number of binary search steps after the linear steps or the cone steps, 0 to [`MAX_BINARY`].
     pub binary_steps: u32,
 }
 
@@ -141,10 +143,10 @@ impl Default for March {
 }
 
 impl March {
-    /// Refuses steps out of bounds.
+    /// Checks that all numbers of steps are within their bounds.
     ///
     /// # Errors
-    /// [`InputError`].
+    /// [`InputError`] that names the first invalid field.
     pub fn validate(&self) -> Result<(), InputError> {
         let [low, high] = self.steps;
         InputError::check_within("steps[0]", low, 1..=MAX_STEPS)?;
@@ -156,21 +158,21 @@ impl March {
     }
 }
 
-/// The outcome of a ray.
+/// Outcome of tracing a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Outcome {
-    /// The ray comes from behind.
+    /// The ray comes from behind the polygon.
     Miss = ray::SURFACE_MISS,
     /// The ray met the surface.
     Hit = ray::SURFACE_HIT,
-    /// The method ran out of steps; the result is the last point that it reached. `cone` and `quadtree` visit at most 32,774
+    /// The method ran out of steps. The result is the last point that it reached. `cone` and `quadtree` visit at most 32,774
     /// nodes, which is enough for rays that cross 16,384 cells.
     Exhausted = ray::SURFACE_EXHAUSTED,
 }
 
 impl Default for ReliefHit {
-    /// A miss, at the corner of the tile.
+    /// A miss, with uv at the corner of the tile.
     fn default() -> Self {
         let outcome_code = Outcome::Miss as u32;
         Self { uv: [0.0; 2], height: 0.0, parameter: 0.0, samples: 0, outcome_code }
@@ -178,7 +180,7 @@ impl Default for ReliefHit {
 }
 
 impl ReliefHit {
-    /// The result at a parameter of the ray.
+    /// Creates the result at a parameter of the ray. `samples` is the number of texels loaded.
     pub fn of(ray: &ReliefRay, parameter: f32, samples: u32, outcome: Outcome) -> Self {
         Self {
             uv: ray.at(parameter),
@@ -189,7 +191,7 @@ impl ReliefHit {
         }
     }
 
-    /// The outcome encoded in `code`.
+    /// Outcome of the ray, decoded from `outcome_code`.
     pub fn outcome(&self) -> Outcome {
         match self.outcome_code {
             ray::SURFACE_MISS => Outcome::Miss,
@@ -234,7 +236,7 @@ mod tests {
         let at = ray.at(ray.polygon);
         assert!((at[0] - 0.25).abs() < 1e-7 && at[1] == 0.5, "{at:?}");
         assert!(ray.slope[0] < 0.0, "rays go away from the eye");
-        // The slope is bounded at the horizon.
+        // Rays at the horizon have a bounded slope.
         assert!(ReliefRay::new([0.0; 2], [1.0, 0.0, 1e-9], 0.1, 1.0).slope[0] >= -12.8);
     }
 }

@@ -15,7 +15,7 @@ impl From<March> for SurfaceMarch {
     }
 }
 
-/// Traces lists of rays with one method.
+/// Traces lists of rays with one method on the GPU.
 #[derive(Debug, Clone)]
 pub struct ReliefPass {
     kernel: Kernel,
@@ -23,20 +23,20 @@ pub struct ReliefPass {
 }
 
 impl ReliefPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu, method: ReliefMethod) -> Result<Self, GpuError> {
         let constants = bindings::Constants { method: method.code() };
         Ok(Self { kernel: bindings::kernel(gpu, &constants)?, method })
     }
 
-    /// Prepares the tracing of all `rays`, with one hit per ray.
+    /// Prepares a job that traces all `rays` and writes one hit per ray into `hits`.
     ///
     /// # Errors
-    /// [`InputError`] for a march out of bounds, for textures of another method or address mode, and for a buffer with too few
-    /// hits; [`GpuError`].
+    /// [`InputError`] if `march` is out of bounds, if `textures` belong to another method or address mode, and if `hits` is
+    /// shorter than `rays`; [`GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Height maps on the device: buffers that kernels read, and textures over which shaders march.
+//! Textures of height maps and their acceleration maps, which shaders trace rays through.
 
 use crate::gpu::{Gpu, GpuError};
 use crate::surface::HeightMapBatch;
@@ -8,25 +8,26 @@ use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::{March, ReliefMethod};
 use crate::{Error, InputError};
 
-/// Textures of a method: the height map and its acceleration map.
+/// Textures that one method needs: the height map and its acceleration map.
 #[derive(Debug, Clone)]
 pub struct SurfaceTextures {
     /// Heights in the red channel, `R32Float`, with all mip levels.
     pub heights: wgpu::Texture,
-    /// The pyramid (`R32Float`) or the cones (`Rg32Float`); a single texel for methods that need neither.
+    /// Acceleration map: the height pyramid (`R32Float`) or the cone map (`Rg32Float`). A single texel for methods that need no
+    /// acceleration map.
     pub acceleration: wgpu::Texture,
-    /// The method for which the acceleration map was computed.
+    /// Method that the acceleration map was computed for.
     pub method: ReliefMethod,
-    /// The address mode for which the acceleration map was computed.
+    /// Address mode that the acceleration map was computed for.
     pub address: Address,
 }
 
 impl SurfaceTextures {
-    /// Uploads the heights and computes the acceleration map of `method` on the device. This is set-up work: it submits and
-    /// does not wait.
+    /// Uploads a height map, and computes the acceleration map of `method` on the device. This is set-up work: it submits
+    /// commands to the device, but does not wait for them.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, map: &HeightMap, method: ReliefMethod, address: Address) -> Result<Self, Error> {
         let heights = upload(gpu, map)?;
         let acceleration = match method {
@@ -36,13 +37,13 @@ impl SurfaceTextures {
         Ok(Self { heights, acceleration, method, address })
     }
 
-    /// Views of the heights and of the acceleration map, to bind.
+    /// Default texture views of the heights and of the acceleration map, to bind.
     pub fn views(&self) -> [wgpu::TextureView; 2] {
         [&self.heights, &self.acceleration]
             .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 
-    /// Refuses a method or an address mode for which the textures were not computed.
+    /// Returns an error unless the textures were computed for `method` and for the address mode of `march`.
     pub fn check(&self, method: ReliefMethod, march: &March) -> Result<(), InputError> {
         if self.method != method {
             let bound = format!("must be {}, which its maps were made for", self.method.name());
@@ -98,14 +99,14 @@ fn texture(
     gpu.scoped(|| gpu.sampled_texture(label, [width, height, 1], levels, format))
 }
 
-/// Copies the first map of a buffer; its rows start at multiples of 256 bytes.
+/// Copies the first map of a buffer to a texture. `pitch` is the size of a row in bytes, a multiple of 256.
 fn copy(encoder: &mut wgpu::CommandEncoder, from: &wgpu::Buffer, to: &wgpu::Texture, pitch: u32) {
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
     let from = wgpu::TexelCopyBufferInfo { buffer: from, layout };
     encoder.copy_buffer_to_texture(from, to.as_image_copy(), to.size());
 }
 
-/// Uploads the heights with all mip levels; each texel is the mean of the four below it.
+/// Uploads a height map with all its mip levels. Each texel of a level is the mean of four texels of the level before.
 fn upload(gpu: &Gpu, map: &HeightMap) -> Result<wgpu::Texture, GpuError> {
     let levels = map.width().max(map.height()).ilog2() + 1;
     let size = [map.width(), map.height()];

@@ -1,28 +1,29 @@
-//! Tangent frames at the vertices of arbitrary triangle meshes (B section 4.2). They transform an eye vector into the space of
-//! height maps.
+//! Tangent frames at the vertices of triangle meshes (thesis B, section 4.2). A tangent frame transforms a view vector into the
+//! space of height maps.
 //!
 //! The tangent ∂P/∂u of each triangle is solved from positions and uv. The unit tangents of the triangles around a vertex are
-//! summed, and Gram–Schmidt makes the sum orthogonal to the vertex's normal. The bitangent is `w · cross(normal, tangent)` and
-//! points along ∂P/∂v, which is down the image if v starts at the top. (glTF's bitangent points up the image, so that its `w`
-//! has the opposite sign.)
+//! summed. Gram–Schmidt makes the sum orthogonal to the vertex's normal. The bitangent is `w · cross(normal, tangent)`. It points
+//! along ∂P/∂v, which is down the image if v starts at the top. (In glTF, the bitangent points up the image, so glTF's `w` has
+//! the opposite sign.)
 //!
-//! **Decided**: B sums the solved tangents as they are, so that the triangle with the smallest extent in the texture dominates,
-//! above all a sliver. Here each triangle is weighted by the chord of its angle at the vertex, 2·sin(θ/2). That is close to the
-//! angle weight of Thürmer and Wüthrich (1998), which does not depend on the triangulation of a surface, and needs no arc
-//! cosine.
+//! **Decided**: thesis B sums the solved tangents without normalizing them. The triangle with the smallest extent in the texture
+//! then dominates, above all a sliver. Here each triangle is weighted by the chord of its angle at the vertex, 2·sin(θ/2). This
+//! weight is close to the angle weight of Thürmer and Wüthrich (1998), which does not depend on how a surface is triangulated.
+//! The chord needs no arc cosine.
 //!
-//! Vertices without a tangent get a frame too, never NaN:
+//! Vertices without a defined tangent get a frame too, never NaN:
 //!
-//! - A triangle contributes nothing when f32 cannot resolve its tangent: its extent in u, v or space is below 2⁻¹⁰⁰, or its
-//!   area, its tangent or its area in uv is below [`DEGENERATE`] of what its extents permit.
-//! - A vertex without contributions, or whose sum cancels out ([`VANISHING`]) or lies along the normal, gets the first vector
-//!   of the basis that Duff et al. (2017) construct from the normal alone, and `w` = 1.
-//! - A normal that is zero or not finite (largest component outside 2⁻¹⁰⁰ to 2¹⁰⁰) counts as +Z: the tangent is (1, 0, 0), and
-//!   `w` = 1. Other normals need not have unit length.
+//! - A triangle contributes nothing if f32 cannot resolve its tangent. This is the case if its extent in u, v or space is below
+//!   2⁻¹⁰⁰. It is also the case if its area, tangent or uv area is below the fraction [`DEGENERATE`] of the largest value that
+//!   its extents allow.
+//! - The tangent is the first vector of the basis that Duff et al. (2017) construct from the normal alone, and `w` is 1, in three
+//!   cases: if no triangle contributes, if the sum cancels out ([`VANISHING`]), and if the sum lies along the normal.
+//! - A normal that is zero or not finite (largest component outside 2⁻¹⁰⁰ to 2¹⁰⁰) counts as +Z. The tangent is then (1, 0, 0),
+//!   and `w` is 1. Other normals need not have unit length.
 //!
-//! `w` is −1 where uv are mirrored. A vertex that mirrored and unmirrored triangles share takes the sign of the larger weight,
-//! or +1 if they are equal. If the tangents of the two halves are opposite, the sum vanishes. Meshes should therefore be split
-//! there; [`split_mirrored`] does so.
+//! `w` is −1 where uv are mirrored. If mirrored and unmirrored triangles share a vertex, `w` is the sign of the larger weight, or
+//! +1 if both are equal. If their tangents are opposite, the sum vanishes. Meshes should therefore be split at such vertices, for
+//! example by [`split_mirrored`].
 
 use crate::InputError;
 use crate::asset::indices::check_triangles;
@@ -37,20 +38,20 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::{TangentBuffers, TangentPass};
 
-/// The result of [`split_mirrored`].
+/// Result of [`split_mirrored`]: the vertices to copy and the changed triangles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Split {
-    /// Indices of the vertices to copy: append the copies to positions, normals, uv and every other attribute.
+    /// Indices of the vertices to copy. Append the copies to positions, normals, uv and every other vertex attribute.
     pub copies: Vec<u32>,
-    /// The triangles in order; mirrored ones refer to the copies.
+    /// Vertex indices of all triangles, in their original order. Mirrored triangles refer to the copies.
     pub indices: Vec<u32>,
 }
 
-/// Splits vertices that mirrored and unmirrored triangles share: mirrored triangles get copies of the vertices. Triangles
-/// without area in uv are left alone.
+/// Splits the vertices that mirrored and unmirrored triangles share: mirrored triangles get copies of the vertices. Triangles
+/// without area in uv do not change.
 ///
 /// # Errors
-/// [`InputError`] for indices that are out of bounds, for a number of indices that is not a multiple of 3, and for more than
+/// [`InputError`] if an index is out of bounds, if the number of indices is not a multiple of 3, and if there would be more than
 /// 2³² vertices.
 pub fn split_mirrored(uv: &[[f32; 2]], indices: &[u32]) -> Result<Split, InputError> {
     check_triangles("indices", indices, uv.len())?;
@@ -89,7 +90,7 @@ mod tests {
 
     #[test]
     fn mirrored_triangles_get_copies_of_shared_vertices() {
-        // Two halves mirrored at the edge from 1 to 2, and a triangle without area.
+        // Two triangles mirrored at the edge from 1 to 2, and a triangle without area.
         let uv = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0]];
         let split = split_mirrored(&uv, &[0, 1, 2, 1, 3, 2, 3, 2, 2]);
         let expected = Split { copies: vec![1, 2], indices: vec![0, 1, 2, 4, 3, 5, 3, 2, 2] };

@@ -6,8 +6,8 @@ use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
 use crate::shared::surface::tangent::TangentParams;
 use crate::{Error, InputError};
 
-/// A mesh on the device. Positions, normals and uv may be rewritten, by other kernels too, as long as positions
-/// and uv stay within the bounds of [`TangentMesh`].
+/// A mesh on the device, for computing tangents. The caller or other kernels may rewrite positions, normals and uv. Positions and
+/// uv must stay within the bounds of [`TangentMesh`].
 #[derive(Debug, Clone)]
 pub struct TangentBuffers {
     /// One position per vertex.
@@ -22,10 +22,10 @@ pub struct TangentBuffers {
 }
 
 impl TangentBuffers {
-    /// Checks and uploads a mesh, with its [`Adjacency`].
+    /// Checks a mesh and uploads it together with its [`Adjacency`].
     ///
     /// # Errors
-    /// [`InputError`] as [`TangentMesh::validate`]; [`GpuError`].
+    /// [`InputError`] if [`TangentMesh::validate`] fails; [`GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, mesh: &TangentMesh<'_>) -> Result<Self, Error> {
         mesh.validate()?;
         let adjacency = Adjacency::new(mesh.positions.len(), mesh.indices);
@@ -40,26 +40,26 @@ impl TangentBuffers {
     }
 }
 
-/// Computes tangent frames.
+/// Computes the tangent frames of a mesh on the GPU.
 #[derive(Debug, Clone)]
 pub struct TangentPass {
     kernel: Kernel,
 }
 
 impl TangentPass {
-    /// Compiles the pipeline.
+    /// Compiles the compute pipeline of this pass.
     ///
     /// # Errors
-    /// Shader compilation errors of the driver.
+    /// [`GpuError`] for shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the frames of `mesh` into `tangents`: tangent x, y, z and handedness for each vertex. The buffer can also serve
-    /// as a vertex buffer.
+    /// Prepares a job that computes the tangent frames of `mesh`. It writes tangent x, y, z and handedness for each vertex into
+    /// `tangents`. The buffer can also serve as a vertex buffer.
     ///
     /// # Errors
-    /// [`InputError`] for a buffer with fewer tangents than vertices; [`GpuError`].
+    /// [`InputError`] if `tangents` is shorter than the number of vertices; [`GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

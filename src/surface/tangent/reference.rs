@@ -1,4 +1,4 @@
-//! Tangent frames of meshes: the CPU reference of `kernels/surface/tangent.wgsl`. The code lies in `asset`,
-//! because the import uses it too.
+//! Tangent frames of meshes: the CPU reference of `kernels/surface/tangent.wgsl`. The code is in `asset`, because the model
+//! import uses it too.
 
 pub use crate::asset::tangents::{TangentFrame, frames, tangents};

@@ -9,12 +9,12 @@ use crate::asset::keyframe::{KeyframeCursor, RotationPath, keyframe_cursor};
 use crate::asset::transform::Transform;
 use crate::shared::animation::sample::VANISHING;
 
-/// Every bone's local transform at a time inside the clip, in seconds.
+/// Local transform of every bone at a time inside the clip, in seconds.
 pub fn sample(clip: &Clip, time: f32, path: RotationPath) -> Vec<Transform> {
     (0..clip.bones()).map(|bone| sample_bone(clip, bone, time, path)).collect()
 }
 
-/// One bone's local transform.
+/// Local transform of one bone at a time inside the clip, in seconds.
 pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> Transform {
     let of = |part| {
         let track = clip.track(bone, part);
@@ -24,7 +24,7 @@ pub fn sample_bone(clip: &Clip, bone: usize, time: f32, path: RotationPath) -> T
     sample_parts(of, path)
 }
 
-/// A track at a cursor: its values from the first on, their interpolation, and the cursor.
+/// A track with a cursor: the values from the track's first value on, their interpolation, and the cursor.
 pub(crate) type Found<'a> = (&'a [[f32; 4]], Interpolation, KeyframeCursor);
 
 /// Samples the three tracks of a bone into a transform.
@@ -76,7 +76,7 @@ pub(crate) fn rotation_at(
     }
 }
 
-/// Evaluates the cubic spline of glTF; each key has in-tangent, value and out-tangent.
+/// Evaluates the cubic spline of glTF. Each key has an in-tangent, a value and an out-tangent.
 fn spline(values: &[[f32; 4]], cursor: KeyframeCursor) -> [f32; 4] {
     let (at, t) = (3 * cursor.key as usize, cursor.fraction);
     let start = values[at + 1];
@@ -107,9 +107,9 @@ fn normalized(q: [f32; 4]) -> [f32; 4] {
     q.map(|component| component * scale)
 }
 
-/// Rotation at the fraction `t` of the way from `a` to `b`. Both are unit quaternions with `dot(a, b) ≥ 0`, as clips store
-/// them. The arc is halved: the result is interpolated from the nearer end to the unit quaternion in the middle,
-/// `(a + b)·inverse`.
+/// Rotation at the fraction `t` (0 to 1) of the arc from `a` to `b`. Both must be unit quaternions with `dot(a, b) ≥ 0`, as clips
+/// store them. The function halves the arc: it interpolates from the nearer end to the unit quaternion in the middle, `(a +
+/// b)·inverse`.
 pub fn slerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
     let cosine = dot(a, b);
     let inverse = 1.0 / (2.0 + 2.0 * cosine).sqrt();
@@ -120,16 +120,16 @@ pub fn slerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
     std::array::from_fn(|i| nearer[i] * of_nearer + farther[i] * of_middle)
 }
 
-/// Returns `sin(t·θ) / sin(θ)` for `less_one` = cos θ − 1.
+/// Returns `sin(t·θ) / sin(θ)`, where `less_one` is cos θ − 1.
 fn slerp_weight(t: f32, less_one: f32) -> f32 {
     let terms = SLERP_U.iter().zip(SLERP_V).rev();
     t * terms.fold(1.0, |sum, (u, v)| 1.0 + (u * (t * t) - v) * less_one * sum)
 }
 
-/// Every bone's local transform of every instance, at their cursors, as the kernel computes it.
+/// Local transform of every bone of every instance, at the instances' cursors. The result follows the computation of the kernel.
 ///
 /// # Panics
-/// If there are fewer cursors than the set needs.
+/// If there are fewer than [`ClipSet::timelines_a_clip`] cursors per instance.
 pub fn sample_set(
     set: &ClipSet,
     instances: &[Instance],
@@ -141,7 +141,7 @@ pub fn sample_set(
     transforms
 }
 
-/// As [`sample_set`], without allocation.
+/// Computes the same as [`sample_set`], but into an existing slice, without allocation.
 ///
 /// # Panics
 /// If there are fewer cursors or transforms than the instances need.
@@ -161,7 +161,7 @@ pub fn sample_set_into(
     }
 }
 
-/// One bone's local transform of one instance, at the instance's cursors.
+/// Local transform of one bone of one instance, at the instance's cursors.
 ///
 /// # Panics
 /// If there are fewer cursors than the clip needs.
@@ -176,11 +176,11 @@ pub fn sample_pair(
     sample_parts(|part| find(set, tracks[part as usize], cursors), path)
 }
 
-/// Every bone's local transform of every instance with its layers, at the cursors of [`all_instances`], as the
-/// kernel computes it for a layered crowd.
+/// Local transform of every bone of every instance, blended over its layers. `cursors` are the cursors of [`all_instances`]. The
+/// result follows the computation of the kernel for a layered crowd.
 ///
 /// # Panics
-/// If there are fewer cursors than the set needs, and for layers that do not match.
+/// If there are fewer cursors than the set needs, or if a layer does not match the base.
 pub fn sample_layers(
     set: &ClipSet,
     base: &[Instance],
@@ -202,7 +202,8 @@ pub fn sample_layers(
     poses
 }
 
-/// Pose at the fraction `weight` of the way from one pose to another. Rotations go along the chord to the nearer of q and −q.
+/// Blends two transforms: `below` at weight 0, `over` at weight 1. Rotations are blended along the chord to the nearer of q and
+/// −q.
 pub fn blend(below: &Transform, over: &Transform, weight: f32) -> Transform {
     let rest = 1.0 - weight;
     let vector =
@@ -220,7 +221,7 @@ fn find<'a>(set: &'a ClipSet, track: SetTrack, cursors: &[KeyframeCursor]) -> Fo
     let first = track.first_value as usize;
     let start = KeyframeCursor::default();
     match (track.timeline, track.interpolation) {
-        // The middle one of three.
+        // `first` is the middle of three values; sampling starts at the first of them.
         (None, Interpolation::CubicSpline) => (&set.values()[first - 1..], Interpolation::CubicSpline, start),
         (None, _) => (&set.values()[first..], Interpolation::Step, start),
         (Some(timeline), between) => (&set.values()[first..], between, cursors[timeline as usize]),

@@ -5,8 +5,8 @@ use super::linear::narrowed;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{March, Outcome, ReliefHit, ReliefRay};
 
-/// Cone stepping over the map's cones, which must have been computed for the march's address mode. `cones` has highest corner
-/// and radius of each cell, row by row.
+/// Traces a ray by stepping over the map's cones. For each cell, row by row, `cones` has the height of the highest corner and the
+/// cone radius. The cones must have been computed for the address mode of `march`.
 pub(crate) fn cone(map: &HeightMap, cones: &[[f32; 2]], ray: &ReliefRay, march: &March) -> ReliefHit {
     let grid = Grid::new(map, ray, march.address);
     let distance = (grid.travel[0] * grid.travel[0] + grid.travel[1] * grid.travel[1]).sqrt();

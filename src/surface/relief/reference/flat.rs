@@ -1,20 +1,20 @@
-//! Methods that do not search: the CPU reference of `wgsl/surface/flat.wgsl`.
+//! Relief methods without a search: the CPU reference of `wgsl/surface/flat.wgsl`.
 
 use super::height::{BILINEAR, height};
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{March, Outcome, ReliefHit, ReliefRay};
 
-/// The polygon's own texture coordinates.
+/// Traces nothing: returns the polygon's own texture coordinates.
 pub(crate) fn plain(ray: &ReliefRay) -> ReliefHit {
     ReliefHit::of(ray, ray.polygon, 0, Outcome::Hit)
 }
 
-/// Kaneko's parallax mapping.
+/// Kaneko's parallax mapping: shifts the texture coordinates by one height sample.
 pub(crate) fn parallax(map: &HeightMap, ray: &ReliefRay, march: &March) -> ReliefHit {
     shifted(map, ray, march, 1.0)
 }
 
-/// Parallax mapping with Welsh's offset limiting.
+/// Parallax mapping with Welsh's offset limiting, which omits the division by the ray's cosine.
 pub(crate) fn parallax_limited(map: &HeightMap, ray: &ReliefRay, march: &March) -> ReliefHit {
     shifted(map, ray, march, ray.cosine)
 }

@@ -1,4 +1,4 @@
-//! The grid of bilinear cells: the CPU reference of `wgsl/surface/grid.wgsl`.
+//! Grid of bilinear cells of a height map: the CPU reference of `wgsl/surface/grid.wgsl`.
 
 use crate::shared::surface::grid::{
     SURFACE_FAR as FAR, SURFACE_LEAST_TRAVEL as LEAST_TRAVEL, SURFACE_MAX_CROSSED, SURFACE_NEVER as NEVER,
@@ -6,7 +6,7 @@ use crate::shared::surface::grid::{
 use crate::surface::map::{Address, HeightMap};
 use crate::surface::relief::ReliefRay;
 
-/// The grid of bilinear cells under a ray.
+/// Grid of bilinear cells that a ray crosses. A cell lies between four texel centers.
 pub(crate) struct Grid {
     size: [i32; 2],
     pub cells: [i32; 2],
@@ -17,7 +17,8 @@ pub(crate) struct Grid {
     address: Address,
 }
 
-/// A square of cells: its index at its level, and its edges in cells from the base. The upper edges are exclusive.
+/// A square of cells. `index` is its index at its pyramid level. `low` and `high` are its edges, in cells from the grid's base;
+/// `high` is exclusive.
 pub(crate) struct Node {
     pub index: [i32; 2],
     low: [i32; 2],
@@ -79,7 +80,7 @@ impl Grid {
         [0, 1].map(|axis| at[axis].clamp(node.low[axis], node.high[axis] - 1))
     }
 
-    /// Cell of the ray at a parameter.
+    /// Cell that contains the ray at a parameter, in cells from the grid's base.
     pub(crate) fn at(&self, parameter: f32) -> [i32; 2] {
         [0, 1].map(|axis| (self.start[axis] + parameter * self.travel[axis]).floor() as i32)
     }
@@ -91,13 +92,14 @@ impl Grid {
         next
     }
 
-    /// Heights of a cell's four corners: (0,0), (1,0), (0,1), (1,1).
+    /// Heights of a cell's four corners, in the order (0,0), (1,0), (0,1), (1,1).
     pub(crate) fn corners(&self, map: &HeightMap, index: [i32; 2]) -> [f32; 4] {
         let first = if self.address == Address::Wrap { index } else { index.map(|at| at - 1) };
         [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| map.texel(first[0] + dx, first[1] + dy, self.address))
     }
 
-    /// First parameter in enter..=leave at which the ray is on or below a cell's bilinear patch, or -1.
+    /// Returns the first parameter in enter..=leave at which the ray is on or below a cell's bilinear patch, or −1 if there is
+    /// none. `low` is the cell's lower corner.
     pub(crate) fn patch(&self, corners: [f32; 4], low: [i32; 2], enter: f32, leave: f32) -> f32 {
         let [h00, h10, h01, h11] = corners;
         let at = [0, 1].map(|i| (self.start[i] - low[i] as f32) + enter * self.travel[i]);
@@ -127,7 +129,7 @@ impl Grid {
 }
 
 impl Node {
-    /// Corner that is the origin of a leaf's patch.
+    /// Corner of a leaf that its bilinear patch is relative to.
     pub(crate) fn corner(&self) -> [i32; 2] {
         [0, 1].map(|axis| if self.low[axis] == -FAR { self.high[axis] - 1 } else { self.low[axis] })
     }

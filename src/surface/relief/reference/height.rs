@@ -3,7 +3,7 @@
 pub use crate::shared::surface::height::SURFACE_BILINEAR as BILINEAR;
 use crate::surface::map::{Address, HeightMap};
 
-/// The bilinear height at `uv`.
+/// Bilinearly interpolated height at `uv`, 0 to 1.
 pub fn height(map: &HeightMap, uv: [f32; 2], address: Address) -> f32 {
     let edges = [map.width(), map.height()];
     let axis = |axis: usize| {

@@ -5,7 +5,7 @@ use crate::shared::surface::linear::SURFACE_LEAST_SPAN as LEAST_SPAN;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{MAX_BINARY, MAX_STEPS, March, Outcome, ReliefHit, ReliefRay};
 
-/// The two points between which a linear search stopped.
+/// The two points between which a linear search stopped: the last point above the surface, and the first point on or below it.
 struct Bracket {
     above: f32,
     under: f32,
@@ -39,13 +39,13 @@ fn search(map: &HeightMap, ray: &ReliefRay, march: &March) -> Bracket {
     bracket
 }
 
-/// Linear search, then binary search.
+/// Relief mapping: linear search, then binary search.
 pub(crate) fn relief(map: &HeightMap, ray: &ReliefRay, march: &March) -> ReliefHit {
     let bracket = search(map, ray, march);
     narrowed(map, ray, march, [bracket.above, bracket.under], bracket.samples)
 }
 
-/// Binary search between a point above the surface and one on or below it.
+/// Binary search between a parameter above the surface and a parameter on or below it.
 pub(crate) fn narrowed(
     map: &HeightMap,
     ray: &ReliefRay,
@@ -65,7 +65,7 @@ pub(crate) fn narrowed(
     ReliefHit::of(ray, 0.5 * (above + under), samples, Outcome::Hit)
 }
 
-/// Linear search, then the intersection with the segment between the last two samples.
+/// Parallax occlusion mapping: linear search, then the intersection with the segment between the last two samples.
 pub(crate) fn occlusion(map: &HeightMap, ray: &ReliefRay, march: &March) -> ReliefHit {
     let mut bracket = search(map, ray, march);
     if bracket.above == 0.0 {

@@ -1,4 +1,4 @@
-//! All methods: the CPU reference of `kernels/surface/relief.wgsl` and `wgsl/surface/trace.wgsl`.
+//! All relief methods: the CPU reference of `kernels/surface/relief.wgsl` and `wgsl/surface/trace.wgsl`.
 
 pub mod cone;
 pub mod flat;
@@ -18,21 +18,21 @@ use crate::surface::relief::reference::linear::{occlusion, relief};
 use crate::surface::relief::reference::quadtree::quadtree;
 use crate::surface::relief::{March, Outcome, ReliefHit, ReliefMethod, ReliefRay};
 
-/// A height map with a method's acceleration map.
+/// A height map together with the acceleration map of a method.
 #[derive(Debug, Clone)]
 pub struct ReliefSurface<'a> {
-    /// The heights.
+    /// The height map.
     pub map: &'a HeightMap,
-    /// Address mode in which the map is traced, and for which its acceleration maps were computed.
+    /// Address mode of the height map. The acceleration maps were computed for this mode.
     pub address: Address,
-    /// Pyramid of the map, for [`ReliefMethod::Quadtree`]; empty for other methods.
+    /// Max-mip pyramid of the height map, for [`ReliefMethod::Quadtree`] and [`ReliefMethod::Cone`]; empty for other methods.
     pub pyramid: Vec<f32>,
-    /// Cones of the map, for [`ReliefMethod::Cone`]; empty for other methods.
+    /// Cone map of the height map, for [`ReliefMethod::Cone`]; empty for other methods.
     pub cones: Vec<[f32; 2]>,
 }
 
 impl<'a> ReliefSurface<'a> {
-    /// Computes the acceleration maps that `method` needs.
+    /// Computes the acceleration maps that `method` needs for a height map.
     pub fn new(map: &'a HeightMap, method: ReliefMethod, address: Address) -> Self {
         let pyramid = match method {
             ReliefMethod::Quadtree | ReliefMethod::Cone => height_pyramid(map, address),
@@ -42,7 +42,7 @@ impl<'a> ReliefSurface<'a> {
         Self { map, address, pyramid, cones }
     }
 
-    /// Traces a ray with `method`, in the surface's own address mode.
+    /// Traces a ray with `method`. The surface's own address mode is used, not the mode in `march`.
     pub fn trace(&self, method: ReliefMethod, ray: &ReliefRay, march: &March) -> ReliefHit {
         if ray.cosine.is_nan() || ray.cosine <= 0.0 {
             return ReliefHit::of(ray, ray.polygon, 0, Outcome::Miss);
@@ -59,7 +59,7 @@ impl<'a> ReliefSurface<'a> {
         }
     }
 
-    /// As [`ReliefSurface::trace`], for a list of rays, on all threads.
+    /// Traces a list of rays like [`ReliefSurface::trace`], in parallel on all CPU threads.
     pub fn trace_all(&self, method: ReliefMethod, rays: &[ReliefRay], march: &March) -> Vec<ReliefHit> {
         rays.par_iter().map(|ray| self.trace(method, ray, march)).collect()
     }

@@ -5,7 +5,7 @@ use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::HeightMap;
 use crate::surface::relief::{March, Outcome, ReliefHit, ReliefRay};
 
-/// Max-mip traversal over the map's pyramid, which must have been computed for the march's address mode.
+/// Traces a ray by traversing the map's max-mip pyramid. The pyramid must have been computed for the address mode of `march`.
 pub(crate) fn quadtree(map: &HeightMap, pyramid: &[f32], ray: &ReliefRay, march: &March) -> ReliefHit {
     let layout = PyramidLayout::new([map.width(), map.height()], march.address);
     let grid = Grid::new(map, ray, march.address);
