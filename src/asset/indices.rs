@@ -2,7 +2,7 @@
 
 use crate::InputError;
 
-/// Checks that the number of indices is a multiple of three, and that each is below `vertices`.
+/// Checks that the number of indices is a multiple of three, and that each index is below `vertices`.
 pub fn check_triangles(path: &str, indices: &[u32], vertices: usize) -> Result<(), InputError> {
     if !indices.len().is_multiple_of(3) {
         return Err(InputError::new(format!("{path}.len"), indices.len(), "must be a multiple of 3"));

@@ -1,5 +1,5 @@
-//! Influences: the bones that each vertex follows, up to eight, the strongest first. Distant instances can use fewer (A section
-//! 8.4):
+//! Influences: the bones that each vertex follows, up to eight, the strongest first. Distant instances can use fewer
+//! (thesis A, section 8.4):
 //!
 //! - `truncate(k)` keeps the k strongest influences and divides their weights by the sum of these. Vertices jump where k
 //!   changes.

@@ -116,7 +116,7 @@ impl WeightKeys {
         (&self.times, &self.values, self.interpolation)
     }
 
-    /// Number of targets.
+    /// Number of morph targets whose weights have keys.
     pub(crate) fn targets(&self) -> usize {
         self.targets
     }

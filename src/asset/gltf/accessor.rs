@@ -24,7 +24,7 @@ enum Kind {
     Fraction,
     /// Floats, normalized integers, and 8- or 16-bit integers that stand for themselves (`KHR_mesh_quantization`).
     Quantized,
-    /// Unsigned integers.
+    /// Unsigned integers, for joints and indices.
     Whole,
 }
 

@@ -36,7 +36,7 @@ pub fn parse(json: &[u8]) -> Result<Value, InputError> {
             attributes.retain(|name, _| !is_foreign(name));
         }
     }
-    // A scene may lack its list of nodes.
+    // In glTF, a scene may lack its list of nodes; gltf-json requires the list.
     for scene in list(&mut value, "scenes").filter_map(Value::as_object_mut) {
         scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
     }

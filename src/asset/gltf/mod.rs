@@ -45,26 +45,26 @@
 //! every `KHR_materials_*`. A document that requires another extension is refused; the error names the extension. Extensions
 //! that a document uses are treated as follows:
 //!
-//! | read | |
+//! | read | remarks |
 //! |---|---|
-//! | `KHR_draco_mesh_compression` | decompressed, also if there is an uncompressed form |
-//! | `EXT_meshopt_compression`, `KHR_meshopt_compression` | decompressed, also if there is an uncompressed form |
+//! | `KHR_draco_mesh_compression` | decompressed, even if the file also has the uncompressed data |
+//! | `EXT_meshopt_compression`, `KHR_meshopt_compression` | decompressed, even if the file also has the uncompressed data |
 //! | `KHR_mesh_quantization` | |
-//! | `KHR_texture_transform` | of the base colour and the normal map |
+//! | `KHR_texture_transform` | for the base colour and the normal map |
 //! | `EXT_texture_webp` | if there is no PNG or JPEG beside it |
 //! | `KHR_materials_pbrSpecularGlossiness` | the diffuse colour is the base colour |
 //! | `KHR_animation_pointer` | pointers at translation, rotation, scale and weights of nodes |
 //!
-//! | refused where it matters | |
+//! | refused | where |
 //! |---|---|
 //! | `EXT_mesh_gpu_instancing` | on a node of the scene |
 //! | `KHR_texture_basisu` (KTX2), `EXT_texture_avif`, `MSFT_texture_dds` | in a texture that is read and has no PNG, JPEG or WebP beside it; the error says how to convert it |
 //!
-//! | left out | |
+//! | left out | remarks |
 //! |---|---|
-//! | other `KHR_materials_*` | as everything in materials but base colour, normal map, alpha and `doubleSided`; meshes have their default material of `KHR_materials_variants` |
+//! | other `KHR_materials_*` | from materials, only base colour, normal map, alpha and `doubleSided` are read; with `KHR_materials_variants`, meshes keep their default material |
 //! | `KHR_lights_punctual`, cameras | |
-//! | `KHR_animation_pointer` at anything else | |
+//! | `KHR_animation_pointer` with any other target | |
 //! | `KHR_node_visibility` | hidden nodes are read like others |
 //! | `MSFT_lod` | the finest level is read |
 //! | `EXT_mesh_features`, `EXT_structural_metadata`, and others that add data to meshes | |

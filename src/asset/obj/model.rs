@@ -107,7 +107,7 @@ fn position(parsed: &Parsed, corner: &Corner) -> DVec3 {
     DVec3::from(parsed.positions[corner[0] as usize].map(f64::from))
 }
 
-/// Normals of corners: those of the file, scaled to length 1, or computed normals where the file has none.
+/// Normals of corners: from the file, scaled to length 1, or computed where the file has none.
 struct Normals {
     given: Vec<Option<[f32; 3]>>,
     /// For each position, the smooth normal of the adjacent faces that have no normals in the file.

@@ -28,7 +28,7 @@ pub(super) struct Owner {
 #[derive(Default)]
 pub(super) struct Parsed {
     pub positions: Vec<[f32; 3]>,
-    /// Texture coordinates, v down the image.
+    /// Texture coordinates; v points down the image.
     pub uv: Vec<[f32; 2]>,
     /// Normals as in the file, of any length.
     pub normals: Vec<[f32; 3]>,
