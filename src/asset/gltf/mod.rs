@@ -62,7 +62,7 @@
 //!
 //! | left out | remarks |
 //! |---|---|
-//! | other `KHR_materials_*` | from materials, only base colour, normal map, alpha and `doubleSided` are read; with `KHR_materials_variants`, meshes keep their default material |
+//! | other `KHR_materials_*` | of materials, only base colour, normal map, alpha and `doubleSided` are read; with `KHR_materials_variants`, meshes keep their default material |
 //! | `KHR_lights_punctual`, cameras | |
 //! | `KHR_animation_pointer` with any other target | |
 //! | `KHR_node_visibility` | hidden nodes are read like others |
