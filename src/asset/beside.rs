@@ -1,9 +1,9 @@
-//! Paths of files beside a model.
+//! Relative paths of the files that a model names.
 
 use std::path::{Component, Path, PathBuf};
 
-/// Path of a file in a folder or below it; `None` for a name with a scheme or a drive letter, and for a path that leads out of
-/// the folder.
+/// Converts a file name to a relative path that stays inside its folder. `None` for an empty name, for a name with a scheme or
+/// a drive letter, and for a path that leads out of the folder.
 pub(super) fn path_below(name: &str) -> Option<PathBuf> {
     let is_plain = |part: &Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let parts = || Path::new(name).components();

@@ -1,24 +1,27 @@
-//! Clips: animations of a skeleton's bones. Each bone has up to three tracks (translation, rotation and scale), each with its
-//! own key times. Interpolation between keys is that of glTF 2.0, appendix C.
+//! Clips: animations of a skeleton's bones. Each bone has up to three tracks (translation, rotation and scale), and each track
+//! has its own key times. Interpolation between keys follows glTF 2.0, appendix C.
 //!
 //! # Layout
 //!
 //! A clip consists of three flat arrays:
 //!
-//! - `tracks`: three [`Track`]s per bone, translation, rotation, scale.
-//! - `times`: `f32` seconds, ascending within a track. Tracks with equal times share them.
-//! - `values`: `vec4<f32>`s: a translation or scale followed by 0, or a quaternion x, y, z, w. Cubic splines have three per
-//!   key: in-tangent, value, out-tangent. Tangents are multiplied by the duration, in seconds, of the segment that they bend.
+//! - `tracks`: three [`Track`]s per bone, in the order translation, rotation, scale.
+//! - `times`: `f32` seconds, ascending within a track. Tracks with equal key times share one list.
+//! - `values`: `vec4<f32>`s. A value is a translation or a scale followed by 0, or a quaternion x, y, z, w. Cubic splines have
+//!   three values per key: in-tangent, value, out-tangent. A tangent is stored multiplied by the duration of its segment in
+//!   seconds; the segment is the interval between two keys that the tangent shapes.
 //!
-//! A key thus takes 16 bytes (48 in a cubic spline), and 4 more if its time is not shared. A bone without keys has tracks of 0
-//! keys, each with one value: the bone's rest pose.
+//! A key thus takes 16 bytes (48 in a cubic spline). Its time takes 4 more bytes, unless another track shares the time. A bone
+//! without keys has three tracks with 0 keys and one value each: the bone's rest pose.
 //!
 //! # Decisions where glTF leaves room
 //!
-//! - Equal successive times are a jump: from that time on, the last key of that time counts. Descending times are refused.
-//! - Quaternions are stored with length 1; one shorter than [`SHORTEST`](super::transform::SHORTEST) is refused. Keys of linear
-//!   rotations are stored with the sign that is closer to the previous key, so that sampling needs no test to take the shortest
-//!   path between neighbouring keys. Cubic splines keep the signs of values and tangents, because these belong together.
+//! - Successive keys with equal times make the value jump: from that time on, the last of these keys applies. Descending times
+//!   are refused.
+//! - Quaternions are stored with length 1. A quaternion shorter than [`SHORTEST`](super::transform::SHORTEST) is refused.
+//! - Keys of linear rotations are stored with the sign that is closer to the previous key. Sampling then takes the shortest
+//!   path between neighbouring keys without a test. Cubic splines keep all signs, because a value and its tangents must keep
+//!   matching signs.
 //! - Times below 2⁻¹⁰⁰ s count as 0, because devices may flush smaller differences to zero.
 
 mod keys;
@@ -35,47 +38,47 @@ pub(crate) use keys::check_times;
 pub use keys::{Interpolation, Keys, LONGEST};
 use layout::Layout;
 
-/// The keys of one bone. A part without keys keeps its rest pose.
+/// The animation keys of one bone. A component that is `None` keeps its value in the rest pose.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BoneKeys {
-    /// Translation in metres, in the parent's space.
+    /// Keys of the translation in metres, in the parent's space.
     pub translation: Option<Keys>,
-    /// Rotations as quaternions (x, y, z, w) of any non-zero length.
+    /// Keys of the rotation: quaternions (x, y, z, w) of any non-zero length.
     pub rotation: Option<Keys>,
-    /// Scale factors along the bone's axes.
+    /// Keys of the scale factors along the bone's axes.
     pub scale: Option<Keys>,
 }
 
-/// The part of a transform that a track animates.
+/// The component of a bone's transform that a track animates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TransformPart {
-    /// The first track of a bone.
+    /// Translation: the first track of a bone.
     Translation = 0,
-    /// The second track.
+    /// Rotation: the second track of a bone.
     Rotation = 1,
-    /// The third track.
+    /// Scale: the third track of a bone.
     Scale = 2,
 }
 
 impl TransformPart {
-    /// All parts, in the order of a bone's tracks.
+    /// All three components, in the order of a bone's tracks.
     pub const ALL: [Self; 3] = [Self::Translation, Self::Rotation, Self::Scale];
 }
 
 /// Location of a track's keys in the clip's arrays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Track {
-    /// Index of the first key's time in `times`.
+    /// Index of the first key's time in [`Clip::times`].
     pub first_time: u32,
-    /// Index of the first value in `values`.
+    /// Index of the first key's value in [`Clip::values`].
     pub first_value: u32,
-    /// Number of keys. 0 means that the single value is the rest pose.
+    /// Number of keys. 0 means that the track holds a single value, the rest pose.
     pub keys: u32,
     /// Interpolation of values between keys.
     pub interpolation: Interpolation,
 }
 
-/// A clip of one skeleton, in flat arrays.
+/// An animation of one skeleton, stored in flat arrays.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "stored::StoredClip")]
 pub struct Clip {
@@ -87,13 +90,14 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// Builds a clip of `skeleton`, with one [`BoneKeys`] per bone. Its duration in seconds is the time of its last key, or
-    /// `duration` if that is longer.
+    /// Builds a clip of `skeleton` from one [`BoneKeys`] per bone. The clip lasts until its last key, or `duration` seconds if
+    /// that is longer.
     ///
     /// # Errors
-    /// [`InputError`] that names the bone's field, with its index: for a list that is not one entry per bone, no keys in a
-    /// track, times that descend or leave 0..=[`LONGEST`], values that do not match the times or are not finite, and rotations
-    /// without a direction.
+    /// [`InputError`] for a duration outside 0..=[`LONGEST`] seconds, and for a list that does not have one entry per bone. For
+    /// wrong keys, the error names the bone's field, with its index. Keys are wrong if a track has none, if times descend or
+    /// leave 0..=[`LONGEST`], if the number of values does not match the times, if a value is not finite, or if a rotation has
+    /// no direction.
     pub fn new(
         name: impl Into<String>,
         skeleton: &Skeleton,
@@ -130,7 +134,7 @@ impl Clip {
     /// Builds a clip of 0 seconds without keys: every bone stays at rest. Use it for models without clips.
     ///
     /// # Errors
-    /// [`InputError`] for a skeleton with so many bones that the values exceed a buffer.
+    /// [`InputError`] for a skeleton with so many bones that their values exceed one buffer.
     pub fn at_rest(name: impl Into<String>, skeleton: &Skeleton) -> Result<Self, InputError> {
         Self::new(name, skeleton, &vec![BoneKeys::default(); skeleton.len()], 0.0)
     }
@@ -150,22 +154,22 @@ impl Clip {
         self.tracks.len() / 3
     }
 
-    /// Three tracks per bone: translation, rotation, scale.
+    /// The tracks of all bones: three per bone, in the order translation, rotation, scale.
     pub fn tracks(&self) -> &[Track] {
         &self.tracks
     }
 
-    /// The key times of all tracks, in seconds.
+    /// The key times of all tracks, in seconds. [`Track::first_time`] is an index into them.
     pub fn times(&self) -> &[f32] {
         &self.times
     }
 
-    /// The values of all tracks.
+    /// The values of all tracks, as vectors of four components. [`Track::first_value`] is an index into them.
     pub fn values(&self) -> &[[f32; 4]] {
         &self.values
     }
 
-    /// One track of a bone.
+    /// The track of one bone that animates `part`.
     pub fn track(&self, bone: usize, part: TransformPart) -> &Track {
         &self.tracks[3 * bone + part as usize]
     }
@@ -175,13 +179,13 @@ impl Clip {
         &self.times[track.first_time as usize..][..track.keys as usize]
     }
 
-    /// The value of a key, without its tangents.
+    /// The value of one key of a track, without the tangents of a cubic spline.
     pub fn key(&self, track: &Track, key: usize) -> [f32; 4] {
         let at = if track.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key };
         self.values[track.first_value as usize + at]
     }
 
-    /// Size of the three arrays in bytes.
+    /// Size of tracks, times and values together, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.tracks) + size_of_val(&*self.times) + size_of_val(&*self.values)
     }

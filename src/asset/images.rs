@@ -5,7 +5,7 @@ use std::io::Cursor;
 use super::Model;
 use crate::InputError;
 
-/// Encodes an image of a model as PNG.
+/// Encodes the image with index `image` of a model as PNG.
 pub(crate) fn png(model: &Model, image: usize) -> Result<Vec<u8>, InputError> {
     let mut bytes = Cursor::new(Vec::new());
     let found = model.images.get(image);

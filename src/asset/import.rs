@@ -6,24 +6,24 @@ use super::model::Model;
 use crate::asset::gltf::Beside;
 use crate::{Error, InputError};
 
-/// File extensions that can be read, in lower case.
+/// Extensions of the file formats that can be imported, in lower case.
 pub const ENDINGS: [&str; 3] = ["glb", "gltf", "obj"];
 
 impl Model {
-    /// Reads a `.gltf`, `.glb` or `.obj` file, and the buffers, material libraries and images beside it.
+    /// Reads a `.gltf`, `.glb` or `.obj` file, with the buffers, material libraries and images that lie beside it.
     ///
     /// # Errors
-    /// [`Error::File`] when the file cannot be read; [`Error::InputFile`], with the path in the file or its line, for
-    /// everything that the format forbids or that this crate does not read.
+    /// [`Error::File`] if the file cannot be read. [`Error::InputFile`] for content that the format forbids or that this crate
+    /// does not support; the error has the path inside the file, or the line.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         Self::read(path, |bytes, beside| Self::from_bytes_beside(path, bytes, beside))
     }
 
-    /// As [`Model::from_file`], without materials and images. Use it when nothing is drawn: missing textures and extensions for
-    /// materials and images then cause no error. No vertex is repeated for its tangents.
+    /// Reads a file like [`Model::from_file`], but leaves out materials and images. Use it when nothing is drawn: missing
+    /// textures, and extensions for materials and images, then cause no error. No vertex is duplicated for its tangents.
     ///
     /// # Errors
-    /// As [`Model::from_file`], except those about materials and images.
+    /// The errors of [`Model::from_file`], except those about materials and images.
     pub fn from_file_bare(path: &Path) -> Result<Self, Error> {
         Self::read(path, |bytes, beside| match is_obj(path) {
             true => Self::from_obj(bytes, None),
@@ -31,11 +31,11 @@ impl Model {
         })
     }
 
-    /// Reads a model from memory: Wavefront OBJ if its name ends in `.obj`, otherwise glTF. `beside` reads other files, given
-    /// their paths relative to the model's folder. It works without a file system.
+    /// Reads a model from memory: Wavefront OBJ if its name ends in `.obj`, otherwise glTF. The function `beside` reads the
+    /// other files; it receives their paths relative to the model's folder. No file system is needed.
     ///
     /// # Errors
-    /// [`InputError`] with the path in the file, or its line.
+    /// [`InputError`] with the path inside the glTF file, or the line of the OBJ file.
     pub fn from_bytes_beside(name: &Path, bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
         match is_obj(name) {
             true => Self::from_obj_beside(bytes, beside),

@@ -1,10 +1,11 @@
-//! Influences: the bones that each vertex follows, up to eight, the strongest first. Distant instances can use fewer (A section
-//! 8.4):
+//! Influences: the bones that each vertex follows, up to eight, the strongest first. Distant instances can use fewer
+//! (thesis A, section 8.4):
 //!
-//! - `truncate(k)` keeps the k strongest and divides them by their sum. Vertices jump where k changes.
-//! - `fade(λ)` subtracts λ times the second strongest weight from every weight but the strongest, which receives the rest. It
-//!   is continuous in λ: 0 is full quality, bit for bit; 1 is rigid. The weakest influences vanish first, and shaders do not
-//!   fetch vanished ones.
+//! - `truncate(k)` keeps the k strongest influences and divides their weights by the sum of these. Vertices jump where k
+//!   changes.
+//! - `fade(λ)` subtracts λ times the second strongest weight from every weight except the strongest. The strongest weight grows
+//!   so that the sum stays 1. The result is continuous in λ: λ = 0 is full quality, bit for bit; λ = 1 is rigid. The weakest
+//!   influences vanish first, and shaders do not fetch vanished influences.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,13 +19,13 @@ pub const MAX_INFLUENCES: usize = 8;
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(C)]
 pub struct Influence {
-    /// Index of the bone in the skin's list.
+    /// Index of the bone in the list [`Skin::bones`](super::skeleton::Skin::bones).
     pub bone: u32,
     /// Weight, above 0; the weights of a vertex sum to 1.
     pub weight: f32,
 }
 
-/// The influences of every vertex of a mesh.
+/// The influences of every vertex of a mesh: bones and weights.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Vec<Influence>>", into = "Vec<Vec<Influence>>")]
 pub struct Influences {
@@ -47,7 +48,7 @@ impl TryFrom<Vec<Vec<Influence>>> for Influences {
 }
 
 impl Default for Influences {
-    /// No vertices.
+    /// Influences of a mesh without vertices.
     fn default() -> Self {
         Self { offsets: vec![0], all: Vec::new() }
     }
@@ -55,12 +56,13 @@ impl Default for Influences {
 
 impl Influences {
     /// Builds influences from the bones and weights of each vertex, given in any order. Weights of the same bone are added, and
-    /// weights of 0 are left out. The rest is sorted, the largest first (equal ones by bone), and divided by its sum. A vertex
-    /// whose weights are all 0 follows its first bone with a weight of 1, as in three.js.
+    /// weights of 0 are dropped. The remaining weights of a vertex are sorted, the largest first (equal weights by bone), and
+    /// divided by their sum. A vertex whose weights are all 0 follows its first bone with a weight of 1, as in three.js.
     ///
     /// # Errors
     /// [`InputError`] for weights that are negative or not finite, for a vertex without bones or with more than
-    /// [`MAX_INFLUENCES`], and for weighted bones that are not below `bones`. In errors, `path` precedes the vertex's number.
+    /// [`MAX_INFLUENCES`], and for a bone with a weight whose index is not below `bones`. In the path of the error, `path`
+    /// precedes the vertex's index.
     pub fn new(
         path: &str,
         bones: usize,
@@ -81,17 +83,16 @@ impl Influences {
         Ok(influences)
     }
 
-    /// Influences for vertices that all follow bone 0 with a weight of 1.
+    /// Builds the influences of a rigid mesh: every vertex follows bone 0 with a weight of 1.
     pub fn rigid(vertices: usize) -> Self {
         let one = Influence { bone: 0, weight: 1.0 };
         Self { offsets: (0..=vertices as u32).collect(), all: vec![one; vertices] }
     }
 
-    /// Restores influences that were read with [`Influences::of`] and stored, in the same order and with weights equal to the
-    /// bit.
+    /// Restores influences that were read with [`Influences::of`] and stored. Order and weights stay the same, bit for bit.
     ///
     /// # Errors
-    /// [`InputError`] for weights that are not in 0..=1 or that ascend, for those of a vertex whose sum is not 1 but for
+    /// [`InputError`] for weights outside 0..=1, for weights of a vertex that ascend or whose sum differs from 1 by more than
     /// rounding, for a bone that is named twice, and for a vertex without influences or with more than [`MAX_INFLUENCES`].
     pub(crate) fn stored(
         path: &str,
@@ -125,13 +126,14 @@ impl Influences {
         Ok(influences)
     }
 
-    /// Appends a vertex with the influences of an existing one.
+    /// Appends a vertex that copies the influences of `vertex`.
     pub(crate) fn repeat(&mut self, vertex: usize) {
         self.all.extend_from_within(self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize);
         self.offsets.push(self.all.len() as u32);
     }
 
-    /// Appends the vertices of another mesh. Their influences keep order and weights; `bone` maps their bone indices.
+    /// Appends the influences of another mesh's vertices, with the same order and weights. `bone` maps the other mesh's bone
+    /// indices.
     pub(crate) fn append(&mut self, other: &Self, mut bone: impl FnMut(u32) -> u32) {
         let first = self.all.len() as u32;
         self.offsets.extend(other.offsets[1..].iter().map(|offset| first + offset));
@@ -140,7 +142,7 @@ impl Influences {
         self.all.extend(renamed);
     }
 
-    /// Influences of a vertex, the strongest first.
+    /// Influences of one vertex, the strongest first.
     pub fn of(&self, vertex: usize) -> &[Influence] {
         &self.all[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
     }
@@ -150,12 +152,12 @@ impl Influences {
         self.offsets.len() - 1
     }
 
-    /// The largest number of influences of any vertex.
+    /// The largest number of influences that any vertex has.
     pub fn most(&self) -> usize {
         self.offsets.windows(2).map(|ends| (ends[1] - ends[0]) as usize).max().unwrap_or(0)
     }
 
-    /// All influences, vertex by vertex.
+    /// The influences of all vertices, concatenated in the order of the vertices.
     pub fn all(&self) -> &[Influence] {
         &self.all
     }
@@ -163,7 +165,8 @@ impl Influences {
 
 type Fault = (String, String);
 
-/// Adds the weights of equal bones, drops weights of 0 and sorts. If all are 0, the first bone gets a weight of 1.
+/// Adds up the weights of equal bones, drops weights of 0, and sorts the rest. If all weights are 0, the first bone gets a
+/// weight of 1.
 fn order(given: &mut Vec<Influence>) -> Result<(), Fault> {
     if let Some(wrong) = given.iter().find(|influence| !(0.0..f32::INFINITY).contains(&influence.weight)) {
         return Err((wrong.weight.to_string(), "must be finite, and not negative".to_owned()));
@@ -215,11 +218,11 @@ mod tests {
     fn the_strongest_come_first_and_sum_to_one() {
         assert_eq!(influences(&[(3, 0.25), (1, 0.0), (2, 0.75)]), Ok(vec![(2, 0.75), (3, 0.25)]));
         assert_eq!(influences(&[(3, 2.0), (1, 2.0), (8, 4.0)]), Ok(vec![(8, 0.5), (1, 0.25), (3, 0.25)]));
-        // A bone that is named twice.
+        // A bone that is named twice gets the sum of its weights.
         assert_eq!(influences(&[(3, 0.5), (1, 0.25), (3, 0.25)]), Ok(vec![(3, 0.75), (1, 0.25)]));
         assert_eq!(influences(&[(3, f32::MAX), (3, f32::MAX)]), Ok(vec![(3, 1.0)]));
         assert_eq!(influences(&[(3, f32::MIN_POSITIVE)]), Ok(vec![(3, 1.0)]));
-        // The bone of a zero weight may have any index.
+        // A bone with a weight of 0 may have any index.
         assert_eq!(influences(&[(3, 1.0), (99, 0.0)]), Ok(vec![(3, 1.0)]));
         // All weights are 0: the vertex follows the first bone.
         assert_eq!(influences(&[(7, 0.0), (1, 0.0), (1, -0.0), (99, 0.0)]), Ok(vec![(7, 1.0)]));

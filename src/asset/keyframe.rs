@@ -1,15 +1,16 @@
-//! Position of a time among key times.
+//! Finds the position of a time among key times.
 
 pub use crate::shared::animation::clip::KeyframeCursor;
 
 impl Default for KeyframeCursor {
-    /// The first key.
+    /// The cursor at the first key, with a fraction of 0.
     fn default() -> Self {
         Self { key: 0, fraction: 0.0 }
     }
 }
 
-/// Keyframe cursor of a time among key times, both in seconds. Of equal key times the last counts.
+/// Finds the last key at or before `time`, and the fraction of the interval to the next key that has passed. All times are in
+/// seconds. Before the first key and after the last, the fraction is 0.
 pub fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
     let last = times.len().saturating_sub(1);
     if last == 0 || time < times[0] {
@@ -36,13 +37,14 @@ pub fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
     KeyframeCursor { key: key as u32, fraction: (time - times[key]) / (times[key + 1] - times[key]) }
 }
 
-/// The path between two rotation keys with linear interpolation.
+/// Path between two rotation keys, for tracks with linear interpolation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum RotationPath {
-    /// Constant speed along the arc, as glTF requires.
+    /// Constant angular speed along the arc, as glTF requires.
     #[default]
     Slerp = 0,
-    /// Along the chord, then normalized: cheaper, and 0.005 to 0.014 rad off on ordinary clips.
+    /// Linear interpolation along the chord, then normalization. Cheaper, with an error of 0.005 to 0.014 rad on ordinary
+    /// clips.
     Nlerp = 1,
 }

@@ -9,10 +9,10 @@ use crate::InputError;
 pub struct Light {
     /// Direction towards the light, in world space, of any non-zero length.
     pub direction: Vec3,
-    /// Linear red, green and blue of the light, each at least 0. It scales all reflected light, including the ambient part.
-    /// With white of 1, a surface that faces the light has its own colour.
+    /// Linear red, green and blue of the light, each at least 0. The colour scales all reflected light, including the ambient
+    /// part. Under white light (1, 1, 1), a surface that faces the light shows its own colour.
     pub color: Vec3,
-    /// Fraction of the light that surfaces facing away still receive, 0 to 1.
+    /// Fraction of the light that surfaces receive when they face away, 0 to 1.
     pub ambient: f32,
 }
 
@@ -23,10 +23,10 @@ impl Default for Light {
 }
 
 impl Light {
-    /// Checks the ranges.
+    /// Checks that all fields are in their ranges.
     ///
     /// # Errors
-    /// [`InputError`] that names the field.
+    /// [`InputError`] that names the first field out of range.
     pub fn validate(&self) -> Result<(), InputError> {
         if self.direction.try_normalize().is_none() {
             let value = self.direction.to_string();
@@ -40,8 +40,8 @@ impl Light {
     }
 }
 
-/// Fraction of its albedo that a Lambertian surface reflects to the eye. `direct` is the cosine of the light's angle of
-/// incidence, 0 to 1, reduced in shadow. `ambient`, 0 to 1, is the light without it.
+/// Fraction of its albedo that a Lambertian surface reflects to the eye. `direct`, 0 to 1, is the cosine of the light's angle
+/// of incidence, reduced in shadow. `ambient`, 0 to 1, is the result for a `direct` of 0.
 pub fn lambert(ambient: f32, direct: f32) -> f32 {
     ambient + (1.0 - ambient) * direct
 }

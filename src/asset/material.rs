@@ -1,50 +1,54 @@
-//! Materials: glTF base colours with their textures, normal maps, and the use of alpha.
+//! Materials: base colours with their textures as in glTF, normal maps, and transparency.
 
 use serde::{Deserialize, Serialize};
 
 /// Longest edge of an image in texels: WebGPU's default limit.
 pub const MAX_TEXELS: u32 = 8192;
 
-/// Base colour and normal map of a surface.
+/// Base colour, normal map and transparency of a surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// The material's name in the file.
     pub name: String,
-    /// Linear red, green and blue, and alpha, each 0 to 1. They are multiplied by the texture.
+    /// Base colour: linear red, green, blue, and alpha, each 0 to 1. The texture, if there is one, is multiplied by this
+    /// colour.
     pub color: [f32; 4],
-    /// Texture with sRGB colour and linear alpha.
+    /// Texture of the base colour: sRGB colour and linear alpha.
     pub texture: Option<Texture>,
-    /// Normal map, if there is one, sampled at the same texture coordinates as the texture. Linear red, green and blue from 0
-    /// to 1 stand for −1 to 1 along the tangent, against the bitangent and along the normal. Green therefore points up in the
-    /// image, as in glTF, and the bitangent of [`Mesh::tangents`](crate::asset::Mesh::tangents) points down.
+    /// Normal map, sampled at the same texture coordinates as the base colour. Red, green and blue are linear; 0 to 1 stands
+    /// for −1 to 1. Red is the component along the tangent, green the component against the bitangent, blue the component along
+    /// the normal.
+    ///
+    /// Green therefore points up in the image, as in glTF, and the bitangent of
+    /// [`Mesh::tangents`](crate::asset::Mesh::tangents) points down.
     pub normal: Option<Texture>,
-    /// Factor of the normal map's components along the tangent and against the bitangent; the result is normalized.
+    /// Factor of the normal map's red and green components (tangent and bitangent). The resulting normal is normalized.
     pub normal_scale: f32,
-    /// Use of alpha.
+    /// How alpha is used: opaque, masked, dithered or blended.
     pub alpha: Alpha,
 }
 
 impl Material {
-    /// An opaque colour without textures.
+    /// Builds an opaque material of one colour, without textures.
     pub fn opaque(name: &str, color: [f32; 4]) -> Self {
         let (name, alpha) = (name.to_owned(), Alpha::Opaque);
         Self { name, color, texture: None, normal: None, normal_scale: 1.0, alpha }
     }
 }
 
-/// A reference to an image, with its sampling.
+/// A reference to an image, with its filtering and wrapping.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Texture {
     /// Index of the image in the model.
     pub image: usize,
-    /// Filtering and wrapping.
+    /// Filtering between texels, and wrapping beyond the image's edges.
     pub sampling: Sampling,
 }
 
 /// Filtering of a texture between its texels, and wrapping beyond its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sampling {
-    /// Wrapping along u and v.
+    /// Wrapping along u, then along v.
     pub wrap: [Wrapping; 2],
     /// Filter where texels are larger than pixels.
     pub magnified: Filter,
@@ -55,50 +59,50 @@ pub struct Sampling {
 }
 
 impl Default for Sampling {
-    /// Repeats, with linear filters throughout.
+    /// Repeats along u and v, with linear filters between texels and between mip levels.
     fn default() -> Self {
         let linear = Filter::Linear;
         Self { wrap: [Wrapping::Repeat; 2], magnified: linear, minified: linear, mips: Some(linear) }
     }
 }
 
-/// Texture content beyond the edge of an image.
+/// What a texture shows beyond the edge of its image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Wrapping {
     /// The image repeats.
     Repeat,
     /// The image repeats, and every second copy is mirrored.
     Mirror,
-    /// The texel at the edge continues.
+    /// The texels at the edge continue outwards.
     Clamp,
 }
 
-/// Method that computes values between texels, or between mip levels.
+/// Method that computes a value between texels, or between mip levels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Filter {
-    /// The nearest value.
+    /// Takes the nearest value.
     Nearest,
-    /// Linear interpolation.
+    /// Interpolates linearly between neighbouring values.
     Linear,
 }
 
-/// Use of alpha.
+/// How a material uses alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Alpha {
     /// Alpha is ignored: the whole surface is opaque.
     Opaque,
-    /// Parts with an alpha below this value are not drawn.
+    /// Pixels with an alpha below this threshold are not drawn; all others are opaque.
     Mask(f32),
-    /// Screen-door transparency: alpha decides how many of each 4 × 4 pixels are drawn. Triangles need no sorting, and depth is
-    /// written. Where two such surfaces overlap, the nearer hides the other completely unless the other is denser.
+    /// Screen-door transparency: alpha is the fraction of the pixels in each 4 × 4 block that are drawn. Triangles need no
+    /// sorting, and depth is written. Where two such surfaces overlap, the farther surface shows only if its alpha is larger.
     Dithered,
-    /// Blended with what lies behind it. In scenes, only the layer `render::Layer::Transparent` draws such surfaces, from back
+    /// Blending with the surfaces behind. In scenes, only the layer `render::Layer::Transparent` draws such surfaces, from back
     /// to front, instance by instance. Without that layer, the surface is drawn as [`Alpha::Dithered`].
     Blended,
 }
 
-/// Threshold for a pixel of [`Alpha::Dithered`], between 0 and 1: pixels with a lower alpha are not drawn. It is the rank of
-/// the pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973).
+/// Alpha threshold of a pixel for [`Alpha::Dithered`], between 0 and 1: a pixel with a lower alpha is not drawn. The threshold
+/// is the rank of the pixel's position in a 4 × 4 ordered-dither matrix (Bayer 1973).
 pub fn dither_threshold([x, y]: [u32; 2]) -> f32 {
     let rank = |x: u32, y: u32| 2 * (x ^ y) + y;
     ((4 * rank(x & 1, y & 1) + rank(x >> 1 & 1, y >> 1 & 1)) as f32 + 0.5) / 16.0

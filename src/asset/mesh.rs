@@ -12,30 +12,30 @@ use crate::asset::skeleton::Skin;
 
 pub(crate) use tangents::in_range;
 
-/// Largest number of vertices of a mesh.
+/// Largest allowed number of vertices of a mesh.
 pub const MAX_VERTICES: usize = 1 << 24;
 
-/// Largest absolute value of a coordinate.
+/// Largest allowed absolute value of a component of positions and texture coordinates.
 pub const COORDINATE_LIMIT: f32 = tangents::COORDINATE_LIMIT;
 
-/// Largest number of levels of detail of a mesh: level 0, the mesh itself, and [`Mesh::levels`] together.
+/// Largest number of levels of detail of a mesh, including level 0, the mesh itself; [`Mesh::levels`] holds the others.
 pub const MAX_LEVELS: usize = crate::shared::skinning::instance_lod::MAX_LEVELS as usize;
 
-/// A coarser level of a mesh. It uses a subset of the mesh's vertices.
+/// A coarser level of detail of a mesh. It uses a subset of the mesh's vertices.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshLevel {
     /// Three vertex indices per triangle, into the mesh's vertices; at least one triangle.
     pub indices: Vec<u32>,
-    /// Largest distance between the surfaces of the level and the mesh over the examined poses, in the model's units, at least
-    /// 0. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it at samples: no vertex of the mesh is further from the
-    /// level, and no sample of the level is further from the mesh. Points between samples may be further.
+    /// Geometric error in the model's units, at least 0: the largest distance between the surfaces of level and mesh over the
+    /// examined poses. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it at samples. No vertex of the mesh is
+    /// further from the level, and no sample of the level is further from the mesh. Points between samples may be further.
     pub error: f32,
 }
 
 /// A triangle mesh that follows the bones of one skin. The default is empty.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Mesh {
-    /// Name of the node, followed by the number of the primitive.
+    /// Name of the file's node, followed by the number of the primitive.
     pub name: String,
     /// Index of the skin in the model.
     pub skin: usize,
@@ -43,35 +43,35 @@ pub struct Mesh {
     pub positions: Vec<[f32; 3]>,
     /// One normal per vertex, of unit length or 0.
     pub normals: Vec<[f32; 3]>,
-    /// One tangent per vertex: a unit vector along u, and a sign ±1. The bitangent, along v, is the sign times normal ×
-    /// tangent. glTF's fourth component has the opposite sign.
+    /// One tangent per vertex: a unit vector along u, and a sign ±1. The bitangent, along v, is the sign times the cross
+    /// product normal × tangent. The fourth component of glTF has the opposite sign.
     pub tangents: Vec<[f32; 4]>,
-    /// Texture coordinates per vertex, for the material's texture; v points down the image.
+    /// Texture coordinates per vertex, for all textures of the material; v points down the image.
     pub uv: Vec<[f32; 2]>,
-    /// Three indices per triangle, counter-clockwise seen from outside after skinning at rest. Where bones mirror a triangle at
-    /// rest, it is clockwise in bind space; the import reverses the file's triangles there.
+    /// Three vertex indices per triangle, counter-clockwise seen from outside after skinning in the rest pose. If bones mirror
+    /// a triangle at rest, it is clockwise in bind space; the import reverses such triangles of the file.
     pub indices: Vec<u32>,
-    /// Whether triangles are also visible from inside.
+    /// Whether triangles are also visible from the inside.
     pub double_sided: bool,
-    /// Index of the material in the model. Without one, the drawing code chooses the colour.
+    /// Index of the material in the model. If it is `None`, the drawing code chooses the colour.
     pub material: Option<usize>,
     /// The influences of each vertex.
     pub influences: Influences,
     /// Morph targets, which move vertices before they are skinned.
     pub targets: Vec<MorphTarget>,
-    /// One weight per target. Clips that do not animate weights use them.
+    /// Default weight of each morph target, for clips that do not animate weights.
     pub weights: Vec<f32>,
-    /// Keys of the weights, with the index of the clip that has them.
+    /// Animated morph weights: the index of each clip that has weight keys, and these keys.
     pub weight_keys: Vec<(usize, WeightKeys)>,
-    /// Coarser levels, starting with level 1, fewer than [`MAX_LEVELS`]; level 0 is the mesh itself. Each uses a subset of the
-    /// vertices of the level before, and errors do not decrease.
+    /// Coarser levels of detail, starting with level 1; there are fewer than [`MAX_LEVELS`]. Level 0 is the mesh itself. Each
+    /// level uses a subset of the previous level's vertices, and errors do not decrease from one level to the next.
     pub levels: Vec<MeshLevel>,
-    /// Partner of each vertex: the vertex that takes its place in the first level that lacks it. The partner is a vertex of
-    /// that level, or a vertex at the same place that has no triangles there. A vertex of the coarsest level, and a vertex
-    /// without triangles, is its own partner.
+    /// Partner of each vertex: the vertex that replaces it in the first level whose triangles no longer use it. The partner is
+    /// a vertex of that level, or a vertex at the same position that has no triangles there. A vertex of the coarsest level,
+    /// and a vertex without triangles, is its own partner.
     ///
-    /// If the corners of a level's triangles are replaced by their partners, the triangles of the next coarser level result in
-    /// the same order, mixed with degenerate triangles. Empty if partners are not known.
+    /// Replacing the corners of a level's triangles by their partners gives the triangles of the next coarser level. Their
+    /// order stays, and degenerate triangles lie among them. The list is empty if partners are not known.
     pub partners: Vec<u32>,
 }
 
@@ -81,7 +81,8 @@ impl Mesh {
         self.positions.len()
     }
 
-    /// Triangles of a level, three indices each. Level 0 is the mesh itself; a number beyond the last level gives the last.
+    /// Triangles of a level of detail, as three vertex indices each. Level 0 is the mesh itself. A number beyond the last level
+    /// gives the last level.
     pub fn triangles(&self, level: u32) -> &[u32] {
         match self.levels.len().min(level as usize) {
             0 => &self.indices,
@@ -89,7 +90,7 @@ impl Mesh {
         }
     }
 
-    /// For each vertex, the coarsest level whose triangles use it; 0 for a vertex without triangles.
+    /// For each vertex, the index of the coarsest level whose triangles use it; 0 for a vertex without triangles.
     pub fn coarsest_levels(&self) -> Vec<u32> {
         let mut coarsest = vec![0; self.vertices()];
         for level in 1..=self.levels.len() as u32 {
@@ -98,21 +99,21 @@ impl Mesh {
         coarsest
     }
 
-    /// Morph weights at a time inside a clip, in seconds.
+    /// Weights of the morph targets at a time in seconds inside a clip. A clip without weight keys gives the default weights.
     pub fn weights_at(&self, clip: usize, time: f32) -> Vec<f32> {
         let keys = self.weight_keys.iter().find(|(of, _)| *of == clip);
         keys.map_or_else(|| self.weights.clone(), |(_, keys)| keys.at(time))
     }
 
-    /// Largest absolute value of a target's weight in any clip; at least 1.
+    /// Largest absolute weight of a morph target in any clip; at least 1.
     pub(crate) fn largest_weight(&self, target: usize) -> f32 {
         let keyed = self.weight_keys.iter().map(|(_, keys)| keys.largest(target));
         keyed.fold(self.weights[target].abs().max(1.0), f32::max)
     }
 }
 
-/// Smooth normals for vertices without any: the area-weighted mean of the normals of adjacent triangles. A vertex without
-/// triangles gets +Z.
+/// Computes smooth normals, one per vertex, for a mesh without normals: the area-weighted mean of the normals of adjacent
+/// triangles. A vertex without triangles gets +Z.
 pub fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
     let mut sums = vec![glam::DVec3::ZERO; positions.len()];
     let position = |index: u32| glam::DVec3::from(positions[index as usize].map(f64::from));
@@ -125,8 +126,8 @@ pub fn smooth_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> 
     sums.iter().map(|sum| unit(sum).to_array().map(|component| component as f32)).collect()
 }
 
-/// The normal scaled to length 1; `None` if it has no direction. Normals of about unit length are kept as they are, to avoid a
-/// second rounding.
+/// Returns the normal scaled to length 1; `None` if it has no direction. A normal of about unit length stays unchanged, because
+/// scaling would round it again.
 pub(super) fn unit_normal(normal: [f32; 3]) -> Option<[f32; 3]> {
     match normal.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt() {
         length if (length - 1.0).abs() < 1e-3 => Some(normal),
@@ -135,7 +136,7 @@ pub(super) fn unit_normal(normal: [f32; 3]) -> Option<[f32; 3]> {
     }
 }
 
-/// Tangents for vertices without any; see [`mod@tangents`].
+/// Computes tangents, one per vertex, for a mesh without tangents; see [`mod@tangents`].
 ///
 /// # Errors
 /// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.
@@ -148,15 +149,15 @@ pub fn solved_tangents(
     tangents(&tangents::TangentMesh { positions, normals, uv, indices })
 }
 
-/// Radius of each bone: the largest distance, in the bone's space, from its origin to a vertex that follows it, wherever morph
-/// targets may move the vertex. 0 for a bone that no vertex follows. Rounded up.
+/// Radius of each bone: the largest distance, in the bone's space, from the bone's origin to any vertex that follows it.
+/// Displacements by morph targets are included. The radius is rounded up; it is 0 for a bone that no vertex follows.
 ///
-/// This radius times the bone's largest scale bounds how far a small rotation of the bone moves any vertex, per radian (the ρ
-/// of the `bounded` gate). A morph target counts with its largest weight in any clip, at least 1. Larger weights that are set
-/// by hand are not covered.
+/// A small rotation of the bone moves no vertex further than the angle in radians × this radius × the bone's largest scale.
+/// (This radius is the ρ of the `bounded` gate.) A morph target counts with its largest weight in any clip, at least 1.
+/// Larger weights that a program sets by hand are not covered.
 ///
 /// # Panics
-/// For meshes that do not match the skins, and for skins that do not match `bones` bones; see [`Mesh::validate`].
+/// If meshes do not match the skins, or skins do not match `bones` bones; see [`Mesh::validate`].
 pub fn bone_radii(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
     let mut bone_radii = vec![0.0_f64; bones];
     for mesh in meshes {
@@ -178,11 +179,11 @@ pub fn bone_radii(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
             }
         }
     }
-    // Compensates the rounding to f32, at most 2⁻²⁴; the errors of f64 are far smaller.
+    // Compensates the relative error of rounding to f32, at most 2⁻²⁴; the errors of f64 are far smaller.
     bone_radii.into_iter().map(|bone_radius| (bone_radius * (1.0 + 1e-6)) as f32).collect()
 }
 
-/// For each vertex, the largest displacement by each target.
+/// For each vertex, the displacement by each morph target that moves it, at that target's largest weight.
 fn deltas_by_vertex(mesh: &Mesh) -> Vec<Vec<glam::DVec3>> {
     let mut deltas = vec![Vec::new(); mesh.vertices()];
     for (index, target) in mesh.targets.iter().enumerate() {
@@ -200,7 +201,7 @@ mod tests {
     use crate::asset::influences::Influence;
     use crate::asset::morph::MorphDelta;
 
-    /// A triangle whose last vertex follows two bones. One of them is bound at x = 10 and at half the size.
+    /// A triangle whose last vertex follows two bones. One of these bones is bound at x = 10 and at half the size.
     pub(super) fn triangle() -> (Mesh, Vec<Skin>) {
         let bind = glam::Mat4::from_scale(glam::Vec3::splat(0.5))
             * glam::Mat4::from_translation(glam::vec3(-10.0, 0.0, 0.0));
@@ -233,7 +234,7 @@ mod tests {
         assert_eq!(mesh.validate(&skins), Ok(()));
         let radii = |mesh: &Mesh| bone_radii(5, &skins, std::slice::from_ref(mesh));
         let near = |found: f32, wanted: f32| (wanted..wanted * 1.000_002).contains(&found);
-        // The weight of −3 counts with its absolute value.
+        // Of the weight −3, the absolute value counts.
         let found = radii(&mesh);
         assert!(near(found[3], 2.0 + 3.0) && near(found[1], 26.0_f32.sqrt() + 1.5), "{found:?}");
         assert_eq!([found[0], found[2], found[4]], [0.0; 3]);

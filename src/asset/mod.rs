@@ -1,4 +1,4 @@
-//! Plain data, independent of any device: models with skeletons, skins, clips, meshes and materials, and their import.
+//! Plain data, independent of any device: models with skeletons, skins, clips, meshes and materials, and the import of files.
 
 mod beside;
 pub mod clip;

@@ -1,5 +1,5 @@
-//! A model: one skeleton, the skins that share it, its clips and its meshes. It may be a character or any other object, moving
-//! or not.
+//! A model: one skeleton, the skins that share it, its clips and its meshes. A model may be a character or any other object,
+//! moving or static.
 
 mod stored;
 
@@ -13,27 +13,27 @@ use crate::{InputError, error};
 
 /// A skeleton with its skins, clips and meshes.
 ///
-/// serde stores a model completely, in any format, including images and the levels of detail of its meshes. Formats that keep
-/// the bits of floats give back an equal model. Deserialization checks the model as a whole. The stored form belongs to one
-/// version of this crate. A program that keeps stored models must store its own version beside them, and import the model again
-/// if that version differs.
+/// serde stores a model completely, in any format, including images and the levels of detail of its meshes. A format that keeps
+/// the bits of floats gives back an equal model. Deserialization checks the whole model. The stored form belongs to one version
+/// of this crate. A program that keeps stored models must also store the crate's version, and import the model again if that
+/// version differs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "stored::StoredModel")]
 pub struct Model {
-    /// The bones.
+    /// The bones of the model.
     pub skeleton: Skeleton,
-    /// Skins that meshes follow.
+    /// Skins: the bones that meshes follow, with their inverse bind matrices.
     pub skins: Vec<Skin>,
-    /// Clips that move the bones.
+    /// Animations that move the bones.
     pub clips: Vec<Clip>,
-    /// Meshes to draw.
+    /// The meshes of the model.
     pub meshes: Vec<Mesh>,
-    /// Number of leading meshes that have a skin from the file. Each of the other meshes follows one bone as a whole: its node
-    /// or an ancestor of its node.
+    /// Number of meshes with a skin from the file; these come first in `meshes`. Each of the other meshes follows one bone as a
+    /// whole: its node or an ancestor of its node.
     pub skinned: usize,
-    /// The materials of the meshes.
+    /// Materials; meshes refer to them by index.
     pub materials: Vec<Material>,
-    /// Images of textures, the top row first: sRGB with linear alpha. Images of normal maps are linear.
+    /// Images of textures, the top row first. Base colours are sRGB with linear alpha; normal maps are linear.
     #[serde(with = "stored::images")]
     pub images: Vec<image::RgbaImage>,
 }
@@ -47,11 +47,11 @@ impl Model {
         }
     }
 
-    /// Material of a mesh, if it has one.
+    /// Returns the material of a mesh, if the mesh has one.
     ///
     /// # Errors
-    /// [`InputError`] for a material or an image that the model does not have, for an image without texels, and for a scale of
-    /// the normal map that is not finite.
+    /// [`InputError`] for a material or an image that the model does not have, for an image without texels, and for a normal
+    /// map's scale that is not finite.
     pub fn material(&self, mesh: &Mesh) -> Result<Option<&Material>, InputError> {
         let Some(index) = mesh.material else { return Ok(None) };
         InputError::check_below("mesh.material", index, self.materials.len())?;
@@ -71,15 +71,16 @@ impl Model {
     /// Checks one skin.
     ///
     /// # Errors
-    /// As [`Skin::validate`], with the index of the skin (`skins[0].bones[3]`).
+    /// The errors of [`Skin::validate`], with the index of the skin in their paths (`skins[0].bones[3]`).
     pub(crate) fn check_skin(&self, skin: usize) -> Result<(), InputError> {
         self.skins[skin].validate(&self.skeleton).map_err(|error| numbered("skin", "skins", skin, error))
     }
 
-    /// Checks one mesh, and its skin.
+    /// Checks one mesh and its skin.
     ///
     /// # Errors
-    /// As [`Mesh::validate`], with the index of the mesh (`meshes[2].indices[1]`), and as [`Self::check_skin`].
+    /// The errors of [`Mesh::validate`], with the index of the mesh in their paths (`meshes[2].indices[1]`), and the errors of
+    /// [`Self::check_skin`].
     pub(crate) fn check_mesh(&self, mesh: usize) -> Result<(), InputError> {
         let checked = self.meshes[mesh].validate(&self.skins);
         checked.map_err(|error| numbered("mesh", "meshes", mesh, error))?;
@@ -89,16 +90,17 @@ impl Model {
     /// Checks the material of one mesh.
     ///
     /// # Errors
-    /// As [`Self::material`], with the index of the mesh (`meshes[2].material`) or of the material.
+    /// The errors of [`Self::material`], with the index of the mesh (`meshes[2].material`) or of the material in their paths.
     pub(crate) fn check_material(&self, mesh: usize) -> Result<(), InputError> {
         let found = self.material(&self.meshes[mesh]);
         found.map(|_| ()).map_err(|error| numbered("mesh", "meshes", mesh, error))
     }
 
-    /// Finds a clip by name or by index, counted from 0. A name that is a number takes precedence.
+    /// Finds a clip by its name, or by its index counted from 0. If a clip's name is itself a number, the name takes
+    /// precedence.
     ///
     /// # Errors
-    /// [`InputError`] that lists up to 20 clips.
+    /// [`InputError`] if there is no such clip. It lists up to 20 clips.
     pub fn clip(&self, name_or_index: &str) -> Result<&Clip, InputError> {
         let by_name = self.clips.iter().find(|clip| clip.name() == name_or_index);
         let by_index = || name_or_index.parse().ok().and_then(|index: usize| self.clips.get(index));
@@ -109,7 +111,7 @@ impl Model {
     }
 }
 
-/// Adds an index to an error whose path begins with `item`, an element of `list`. Other errors stay as they are.
+/// Replaces the leading `item` of an error's path by `list[number]`. Errors with other paths stay unchanged.
 fn numbered(item: &str, list: &str, number: usize, error: InputError) -> InputError {
     let field = error.path.strip_prefix(item).filter(|field| field.starts_with('.'));
     match field {

@@ -7,35 +7,36 @@ use super::keyframe::{KeyframeCursor, keyframe_cursor};
 use super::transform::finite;
 use crate::InputError;
 
-/// Displacement of some vertices at a weight of 1. All other vertices stay in place.
+/// A morph target: the displacement of some vertices at a weight of 1. All other vertices stay in place.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MorphTarget {
-    /// Indices of the vertices, ascending.
+    /// Indices of the displaced vertices, ascending.
     pub vertices: Vec<u32>,
-    /// One delta per listed vertex, added to its position, normal and tangent.
+    /// One delta for each entry of `vertices`, added to the vertex's position, normal and tangent.
     pub deltas: Vec<MorphDelta>,
 }
 
 /// The displacement of a vertex at a weight of 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct MorphDelta {
-    /// Added to its position.
+    /// Change of the vertex's position.
     pub position: [f32; 3],
-    /// Added to its normal.
+    /// Change of the vertex's normal.
     pub normal: [f32; 3],
-    /// Added to its tangent.
+    /// Change of the vertex's tangent.
     pub tangent: [f32; 3],
 }
 
 impl MorphTarget {
-    /// Builds a target from one delta per vertex; vertices with a delta of 0 are left out.
+    /// Builds a morph target from one delta per vertex of the mesh. Vertices with a delta of 0 are left out.
     pub fn new(deltas: &[MorphDelta]) -> Self {
         let moving = (0..).zip(deltas).filter(|(_, delta)| **delta != MorphDelta::default());
         let (vertices, deltas) = moving.map(|(vertex, delta): (u32, _)| (vertex, *delta)).unzip();
         Self { vertices, deltas }
     }
 
-    /// Gives `copy` the delta of `vertex`, if there is one. The index of `copy` must exceed all others.
+    /// Gives vertex `copy` the same delta as `vertex`, if `vertex` has one. The index `copy` must exceed all indices in the
+    /// target.
     pub(crate) fn repeat(&mut self, vertex: u32, copy: u32) {
         if let Ok(at) = self.vertices.binary_search(&vertex) {
             self.vertices.push(copy);
@@ -54,7 +55,7 @@ pub struct WeightKeys {
     targets: usize,
 }
 
-/// Keys as read, before validation.
+/// Weight keys as serde reads them, before validation.
 #[derive(Deserialize)]
 #[serde(rename = "WeightKeys")]
 struct StoredKeys {
@@ -69,7 +70,7 @@ impl TryFrom<StoredKeys> for WeightKeys {
 
     fn try_from(stored: StoredKeys) -> Result<Self, InputError> {
         let StoredKeys { times, values, interpolation, targets } = stored;
-        // The product with a larger number could overflow.
+        // A larger number of targets could overflow the product that `new` computes.
         if targets > values.len() {
             let bound = format!("must be at most {}, the number of values", values.len());
             return Err(InputError::new("weight_keys.targets", targets, bound));
@@ -79,12 +80,13 @@ impl TryFrom<StoredKeys> for WeightKeys {
 }
 
 impl WeightKeys {
-    /// Builds keys of `targets` weights. Each key has one value per target. In splines each key has the in-tangents, then the
-    /// values, then the out-tangents (per second). `at_times` and `at_values` are the paths of these fields in errors.
+    /// Builds the keys of `targets` weights. Each key has one value per target. In a cubic spline, a key has first all
+    /// in-tangents, then all values, then all out-tangents; tangents are per second. `at_times` and `at_values` are the paths
+    /// of these fields in errors.
     ///
     /// # Errors
-    /// [`InputError`] for no keys or targets; for times that descend, are negative, too large or not finite; for a wrong number
-    /// of values; and for values that are not finite.
+    /// [`InputError`] for no keys or no targets; for times that descend, are negative, too large or not finite; for a wrong
+    /// number of values; and for values that are not finite.
     pub fn new(
         [at_times, at_values]: [&str; 2],
         times: Vec<f32>,
@@ -102,19 +104,19 @@ impl WeightKeys {
         Ok(Self { times, values, interpolation, targets })
     }
 
-    /// Weights at a time inside the clip, in seconds.
+    /// The weight of each target at a time in seconds inside the clip.
     pub fn at(&self, time: f32) -> Vec<f32> {
         let KeyframeCursor { key, fraction } = keyframe_cursor(&self.times, time);
         let key = key as usize;
         (0..self.targets).map(|target| self.between(key, fraction, target)).collect()
     }
 
-    /// Times, values and the interpolation.
+    /// Key times in seconds, weights at the keys, and interpolation.
     pub(crate) fn parts(&self) -> (&[f32], &[f32], Interpolation) {
         (&self.times, &self.values, self.interpolation)
     }
 
-    /// Number of targets.
+    /// Number of morph targets whose weights have keys.
     pub(crate) fn targets(&self) -> usize {
         self.targets
     }
@@ -141,14 +143,15 @@ impl WeightKeys {
         }
     }
 
-    /// Upper bound on the absolute value of a target's weight.
+    /// Upper bound on the absolute value of a target's weight over the whole clip.
     pub fn largest(&self, target: usize) -> f32 {
         let all = (0..self.times.len()).map(|key| self.between(key, 0.0, target).abs());
         let values = all.fold(0.0, f32::max);
         if self.interpolation != Interpolation::CubicSpline {
             return values;
         }
-        // The weights of the two tangents, t³ − 2t² + t and t³ − t², reach 4/27 in absolute value; their sum never exceeds 1/4.
+        // The factors of the two tangents, t³ − 2t² + t and t³ − t², reach 4/27 in absolute value. The sum of their absolute
+        // values never exceeds 1/4.
         let tangent = |key: usize, part: usize| self.values[(3 * key + part) * self.targets + target].abs();
         let bends = (1..self.times.len())
             .map(|key| (self.times[key] - self.times[key - 1]) * tangent(key - 1, 2).max(tangent(key, 0)));
@@ -175,7 +178,7 @@ mod tests {
         assert_eq!((linear.largest(0), linear.largest(1)), (4.0, 1.0));
         let step = keys(&values, Interpolation::Step).expect("valid");
         assert_eq!((step.at(1.9), step.at(2.0)), (vec![0.0, 1.0], vec![4.0, -1.0]));
-        // In-tangents, values, out-tangents; the second target curves between its keys.
+        // In-tangents, values, out-tangents of two targets. The second target's weight curves between its keys.
         let spline = [0.0, 0.0, 0.0, 1.0, 0.0, 6.0, 0.0, -6.0, 4.0, 1.0, 0.0, 0.0];
         let spline = keys(&spline, Interpolation::CubicSpline).expect("valid");
         assert_eq!(

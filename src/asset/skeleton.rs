@@ -5,30 +5,30 @@ use serde::{Deserialize, Serialize};
 use super::transform::{Transform, finite};
 use crate::InputError;
 
-/// Largest number of bones of a skeleton.
+/// Largest allowed number of bones of a skeleton.
 pub const MAX_BONES: usize = 1 << 20;
 
-/// A node of the skeleton.
+/// A bone: a node of the skeleton.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bone {
     /// The bone's name in the file; names need not be unique.
     pub name: String,
-    /// Index of the parent; it is smaller than the bone's own.
+    /// Index of the parent bone, smaller than the bone's own index; `None` for a root.
     pub parent: Option<u32>,
-    /// Transform in the parent's space when no clip moves the bone.
+    /// Transform relative to the parent when no clip moves the bone.
     pub rest: Transform,
 }
 
 impl Bone {
-    /// Largest scale at rest along an axis; 1 if all are 0.
+    /// Largest absolute scale along any axis in the rest pose; 1 if all scales are 0.
     pub(crate) fn scale(&self) -> f64 {
         let largest = self.rest.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
         if largest > 0.0 { largest.into() } else { 1.0 }
     }
 }
 
-/// Bones in an order with every parent before its children. Nodes that no skin uses are bones too if there are joints below
-/// them.
+/// Bones in an order in which every parent comes before its children. A node that no skin uses is also a bone if joints lie
+/// below it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "StoredSkeleton", into = "StoredSkeleton")]
 pub struct Skeleton {
@@ -58,7 +58,8 @@ impl From<Skeleton> for StoredSkeleton {
 impl TryFrom<StoredSkeleton> for Skeleton {
     type Error = InputError;
 
-    /// As [`Skeleton::new`], but rotations keep their bits. Their length must be 1 up to rounding.
+    /// Builds the skeleton like [`Skeleton::new`], but rotations keep their bits. The length of each rotation must be 1, up to
+    /// rounding.
     fn try_from(StoredSkeleton { bones, joints }: StoredSkeleton) -> Result<Self, InputError> {
         let checked = Self::new(bones.clone(), joints)?;
         for (at, bone) in bones.iter().enumerate() {
@@ -74,11 +75,12 @@ impl TryFrom<StoredSkeleton> for Skeleton {
 }
 
 impl Skeleton {
-    /// Builds a skeleton of `bones`. `joints` are the bones that skins use, in the order in which tools list them.
+    /// Builds a skeleton of `bones`. `joints` are the indices of the bones that skins use, in the order in which tools list
+    /// them.
     ///
     /// # Errors
-    /// [`InputError`] for no or too many bones, for a parent that does not come before its child, for a rest pose that is not
-    /// finite or has no rotation, and for joints that are not bones or are named twice.
+    /// [`InputError`] for no or too many bones, and for a parent that does not come before its child. Also for a rest pose that
+    /// is not finite or whose rotation has no direction, and for joints that are not bones or are named twice.
     pub fn new(mut bones: Vec<Bone>, joints: Vec<u32>) -> Result<Self, InputError> {
         InputError::check_within("bones.len", bones.len(), 1..=MAX_BONES)?;
         for (index, bone) in bones.iter_mut().enumerate() {
@@ -106,13 +108,13 @@ impl Skeleton {
     /// Builds a skeleton whose bones are all joints.
     ///
     /// # Errors
-    /// As [`Skeleton::new`].
+    /// The errors of [`Skeleton::new`].
     pub fn of_joints(bones: Vec<Bone>) -> Result<Self, InputError> {
         let joints = (0..bones.len() as u32).collect();
         Self::new(bones, joints)
     }
 
-    /// The bones, parents first.
+    /// The bones; every parent comes before its children.
     pub fn bones(&self) -> &[Bone] {
         &self.bones
     }
@@ -127,23 +129,22 @@ impl Skeleton {
         self.bones.is_empty()
     }
 
-    /// Bones that skins use, in the order of the file: the joints of every skin, each once. If the file has no skins, all
-    /// bones.
+    /// Indices of the bones that skins use, each once, in the order of the file. All bones if the file has no skins.
     pub fn joints(&self) -> &[u32] {
         &self.joints
     }
 
-    /// For each bone, the number of steps from its root.
+    /// For each bone, the number of steps up to its root; 0 for a root.
     pub fn depths(&self) -> &[u32] {
         &self.depths
     }
 
-    /// For each bone, the number of its descendants.
+    /// For each bone, the number of bones below it in the hierarchy.
     pub fn descendants(&self) -> &[u32] {
         &self.descendants
     }
 
-    /// The rest transform of every bone, in its parent's space.
+    /// The rest transform of every bone, relative to its parent.
     pub fn rest(&self) -> Vec<Transform> {
         self.bones.iter().map(|bone| bone.rest).collect()
     }
@@ -159,7 +160,8 @@ impl Skeleton {
         above
     }
 
-    /// Length of each bone at rest, in its own units: the distance to its farthest child, or to its parent if it has no child.
+    /// Length of each bone at rest, in the bone's own units: the distance to its farthest child, or to its parent if it has no
+    /// child.
     pub fn lengths(&self) -> Vec<f64> {
         let reach = |bone: &Bone| glam::DVec3::from(bone.rest.translation.map(f64::from)).length();
         let mut lengths = vec![0.0_f64; self.bones.len()];
@@ -177,7 +179,7 @@ impl Skeleton {
         lengths
     }
 
-    /// For each of [`Skeleton::joints`], the index in that list of its nearest ancestor joint.
+    /// For each joint in [`Skeleton::joints`], its nearest ancestor that is a joint too, as an index into that list.
     pub fn joint_parents(&self) -> Vec<Option<u32>> {
         let mut place = vec![None; self.bones.len()];
         for (joint, at) in self.joints.iter().zip(0..) {
@@ -209,14 +211,14 @@ fn descendants(bones: &[Bone]) -> Vec<u32> {
     descendants
 }
 
-/// A skin: the bones that vertices follow, with an inverse bind matrix for each.
+/// A skin: the bones that vertices follow, with one inverse bind matrix per bone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Skin {
     /// The skin's name in the file.
     pub name: String,
-    /// Indices of bones. The joint indices of vertices refer to this list.
+    /// Indices of bones in the skeleton. Influences of vertices refer to positions in this list.
     pub bones: Vec<u32>,
-    /// One column-major matrix per bone: from the mesh's space to the bone's space in the bind pose.
+    /// One column-major matrix per bone. It transforms from the mesh's space to the bone's space in the bind pose.
     pub inverse_binds: Vec<[f32; 16]>,
 }
 
@@ -241,7 +243,7 @@ impl Skin {
 /// Refuses a matrix that is not finite or not affine.
 pub(crate) fn inverse_bind(path: &str, matrix: &[f32; 16]) -> Result<(), InputError> {
     finite(path, matrix)?;
-    // Exporters write the last row with rounding errors.
+    // Exporters write the last row with rounding errors, so a deviation of 1e-4 is allowed.
     let row = [3, 7, 11, 15].map(|index| matrix[index]);
     let error = row.iter().zip([0.0, 0.0, 0.0, 1.0]).map(|(value, wanted)| (value - wanted).abs());
     if error.fold(0.0, f32::max) > 1e-4 {
@@ -260,7 +262,7 @@ mod tests {
 
     #[test]
     fn depths_descendants_and_parents_are_counted() {
-        // 0 ─ 1 ─ 2 ─ 4, 1 ─ 3, and 5 by itself.
+        // Bone 0 has child 1, bone 1 has children 2 and 3, bone 2 has child 4. Bone 5 stands alone.
         let parents = [None, Some(0), Some(1), Some(1), Some(2), None];
         let bones = parents.map(bone).to_vec();
         let skeleton = Skeleton::new(bones, vec![4, 1, 5]).expect("valid");

@@ -1,5 +1,5 @@
-//! Tangent frames of meshes, solved in f64: the import's fallback, and the reference of `kernels/surface/tangent.wgsl`.
-//! [`crate::surface::tangent`] defines them.
+//! Computes tangent frames of meshes in f64. They are the import's fallback, and the reference for
+//! `kernels/surface/tangent.wgsl`. [`crate::surface::tangent`] defines tangent frames.
 
 use glam::{DVec2, DVec3};
 
@@ -8,11 +8,11 @@ use crate::InputError;
 use crate::shared::surface::tangent::{self, LARGEST_BITS, LEAST_BITS};
 pub use crate::shared::surface::tangent::{DEGENERATE, VANISHING};
 
-/// Largest absolute value of a coordinate, for positions and uv.
+/// Largest allowed absolute value of a component of positions and texture coordinates.
 pub const COORDINATE_LIMIT: f32 = 1e18;
 
-/// Largest allowed difference between a component of a tangent and the reference, on any device, for a vertex of sensitivity 1
-/// ([`TangentFrame`]).
+/// Largest allowed difference between a component of a tangent and the reference, on any device. It applies to a vertex of
+/// sensitivity 1 ([`TangentFrame::sensitivity`]); a larger sensitivity multiplies it.
 ///
 /// `docs/rounding-bounds.md` has the derivation.
 pub const TANGENT_BOUND: f32 = 1e-5;
@@ -20,13 +20,13 @@ pub const TANGENT_BOUND: f32 = 1e-5;
 /// A triangle mesh with normals and texture coordinates.
 #[derive(Debug, Clone, Copy)]
 pub struct TangentMesh<'a> {
-    /// Positions in any unit, finite, with no component larger than [`COORDINATE_LIMIT`].
+    /// Positions in any unit. Components are finite and at most [`COORDINATE_LIMIT`] in absolute value.
     pub positions: &'a [[f32; 3]],
     /// One normal per vertex, of any length.
     pub normals: &'a [[f32; 3]],
-    /// Texture coordinates per vertex, finite, with no component larger than [`COORDINATE_LIMIT`].
+    /// Texture coordinates per vertex. Components are finite and at most [`COORDINATE_LIMIT`] in absolute value.
     pub uv: &'a [[f32; 2]],
-    /// Three indices per triangle, counter-clockwise seen from the side that normals point to.
+    /// Three vertex indices per triangle, counter-clockwise seen from the side to which normals point.
     pub indices: &'a [u32],
 }
 
@@ -34,13 +34,13 @@ impl TangentMesh<'_> {
     /// Checks lengths, indices and coordinates.
     ///
     /// # Errors
-    /// [`InputError`] that names the field, with its index.
+    /// [`InputError`] that names the wrong field, with its index.
     pub fn validate(&self) -> Result<(), InputError> {
         let vertices = self.positions.len();
         InputError::check_len("normals", self.normals.len(), vertices, "a position")?;
         InputError::check_len("uv", self.uv.len(), vertices, "a position")?;
         for (field, len) in [("positions.len", vertices), ("indices.len", self.indices.len())] {
-            // The last offset of the adjacency is the number of corners and must fit u32.
+            // The last offset of the adjacency is the number of corners, and offsets are u32.
             InputError::check_most(field, len, u32::MAX as usize)?;
         }
         in_range("positions", self.positions)?;
@@ -49,15 +49,15 @@ impl TangentMesh<'_> {
     }
 }
 
-/// Refuses values that are not finite or larger than [`COORDINATE_LIMIT`]; `path` names the list of vectors.
+/// Refuses components that are not finite or larger than [`COORDINATE_LIMIT`]. `path` names the list of vectors.
 pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), InputError> {
     (vectors.iter().enumerate())
         .try_for_each(|(at, vector)| numbers_in_range(|| format!("{path}[{at}]"), vector.as_ref()))
 }
 
-/// As [`in_range`], for one list of numbers.
+/// Refuses numbers of one list that are not finite or larger than [`COORDINATE_LIMIT`]. `path` names the list.
 pub(super) fn numbers_in_range(path: impl Fn() -> String, numbers: &[f32]) -> Result<(), InputError> {
-    // The comparison is false for NaN.
+    // NaN is refused, too, because comparisons with it are false.
     let is_within = |value: &f32| value.abs() <= COORDINATE_LIMIT;
     match numbers.iter().position(|value| !is_within(value)) {
         None => Ok(()),
@@ -68,17 +68,18 @@ pub(super) fn numbers_in_range(path: impl Fn() -> String, numbers: &[f32]) -> Re
     }
 }
 
-/// Triangle corners that meet at each vertex. The reference and the kernel sum in this order, so that all runs agree.
+/// For each vertex, the triangle corners that meet there. The reference and the kernel add in this order, so that all runs
+/// agree.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adjacency {
-    /// Start of each vertex's corners; one entry more than there are vertices.
+    /// Start of each vertex's range in `corners`; one more entry holds the total.
     pub offsets: Vec<u32>,
-    /// Positions in the index list, in ascending order for each vertex.
+    /// Positions in the mesh's index list, in ascending order for each vertex.
     pub corners: Vec<u32>,
 }
 
 impl Adjacency {
-    /// The adjacency of `vertices` vertices; `indices` must be valid.
+    /// Builds the adjacency of `vertices` vertices. All `indices` must be valid.
     pub(crate) fn new(vertices: usize, indices: &[u32]) -> Self {
         let mut offsets = vec![0; vertices + 1];
         for index in indices {
@@ -97,40 +98,40 @@ impl Adjacency {
         Self { offsets, corners }
     }
 
-    /// The corners at a vertex.
+    /// The corners at one vertex, as positions in the mesh's index list.
     pub fn at(&self, vertex: usize) -> &[u32] {
         &self.corners[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
     }
 }
 
-/// Threshold 2⁻¹⁰⁰ of degenerate values.
+/// Lengths below this threshold, 2⁻¹⁰⁰, count as degenerate.
 const LEAST: f64 = tangent::LEAST as f64;
 
-/// Unit in the last place of numbers around 1.
+/// Machine epsilon of f32: distance between 1 and the next larger number.
 const EPSILON: f64 = f32::EPSILON as f64;
 
 /// A tangent frame, and its sensitivity to rounding in f32.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentFrame {
-    /// Unit tangent x, y, z, orthogonal to the normal, and the handedness ±1.
+    /// Unit tangent x, y, z, orthogonal to the normal, and the handedness ±1 of the frame.
     pub tangent: [f32; 4],
-    /// Factor of [`TANGENT_BOUND`] at this vertex, 1 or more. Infinite if rounding decides whether something counts as
+    /// Factor of [`TANGENT_BOUND`] at this vertex, 1 or more. Infinite if rounding decides whether a triangle or the sum is
     /// degenerate.
     pub sensitivity: f64,
 }
 
-/// Tangent and handedness of every vertex. See [`crate::surface::tangent`].
+/// Computes tangent and handedness of every vertex, as [`crate::surface::tangent`] defines them.
 ///
 /// # Errors
-/// [`InputError`] as [`TangentMesh::validate`].
+/// The errors of [`TangentMesh::validate`].
 pub fn tangents(mesh: &TangentMesh<'_>) -> Result<Vec<[f32; 4]>, InputError> {
     Ok(frames(mesh)?.into_iter().map(|frame| frame.tangent).collect())
 }
 
-/// As [`tangents`], with the sensitivity of each frame.
+/// Computes the tangent frame of every vertex, with its sensitivity to rounding. [`tangents`] returns the same tangents alone.
 ///
 /// # Errors
-/// [`InputError`] as [`TangentMesh::validate`].
+/// The errors of [`TangentMesh::validate`].
 pub fn frames(mesh: &TangentMesh<'_>) -> Result<Vec<TangentFrame>, InputError> {
     mesh.validate()?;
     let adjacency = Adjacency::new(mesh.positions.len(), mesh.indices);
@@ -142,7 +143,7 @@ struct Contribution {
     tangent: DVec3,
     weight: f64,
     handedness: f64,
-    /// Sensitivities of the tangent and of the handedness.
+    /// Sensitivity of the tangent (x) and of the handedness (y) to rounding.
     sensitivity: DVec2,
 }
 
@@ -163,7 +164,7 @@ fn unit(vector: DVec3) -> DVec3 {
     vector / vector.dot(vector).sqrt()
 }
 
-/// Contribution of a triangle to the vertex at one of its corners.
+/// Contribution of one triangle to the frame of the vertex at `corner`.
 fn contribution(mesh: &TangentMesh<'_>, corner: u32, normal: DVec3) -> Contribution {
     let first = corner - corner % 3;
     let [vertex, next, last] = [corner, first + (corner + 1) % 3, first + (corner + 2) % 3]
@@ -205,12 +206,12 @@ fn contribution(mesh: &TangentMesh<'_>, corner: u32, normal: DVec3) -> Contribut
     }
 }
 
-/// Infinite if `value` is so close to a threshold that rounding decides; otherwise 0.
+/// Returns infinity if `value` is so close to `threshold` that rounding decides the comparison; otherwise 0.
 fn undecided(value: f64, threshold: f64, error: f64) -> f64 {
     if (value - threshold).abs() <= error { f64::INFINITY } else { 0.0 }
 }
 
-/// First vector of the basis of Duff et al. 2017 for a unit normal.
+/// First vector of an orthonormal basis around a unit normal (Duff et al. 2017).
 fn fallback(normal: DVec3, negative_z: bool) -> DVec3 {
     let side = if negative_z { -1.0 } else { 1.0 };
     let a = -1.0 / (side + normal.z);
@@ -237,7 +238,7 @@ fn frame(mesh: &TangentMesh<'_>, adjacency: &Adjacency, vertex: usize) -> Tangen
     }
     let flat = sum.tangent - normal * normal.dot(sum.tangent);
     let least = sum.weight * f64::from(VANISHING);
-    // n additions add n roundings; the bound's unit covers 32 of them.
+    // n additions make n roundings; a factor of 1 covers 32 of these.
     let sensitivity = sum.sensitivity * (1.0 + corners.len() as f64 / 32.0);
     let error = f64::from(TANGENT_BOUND) * sensitivity;
     let vanishing = if sum.weight > 0.0 { undecided(flat.length(), least, error.x) } else { 0.0 };

@@ -1,8 +1,8 @@
-//! Bone transforms as keys hold them (translation, rotation and scale), and the affine matrices that chains of bones produce.
+//! Bone transforms (translation, rotation and scale), and the affine matrices that chains of bones produce.
 
 use crate::InputError;
 
-/// Shortest quaternion with a usable direction; shorter ones are refused.
+/// Shortest length of a quaternion with a usable direction; a shorter quaternion is refused.
 pub const SHORTEST: f32 = 1e-6;
 
 /// The transform `translation · rotation · scale`; scale is applied first.
@@ -10,23 +10,23 @@ pub const SHORTEST: f32 = 1e-6;
 pub struct Transform {
     /// Translation in the parent's space, in metres.
     pub translation: [f32; 3],
-    /// A unit quaternion (x, y, z, w); q and −q are the same rotation.
+    /// Rotation as a unit quaternion (x, y, z, w). q and −q are the same rotation.
     pub rotation: [f32; 4],
     /// Scale factors along the bone's own axes; they may be negative or zero.
     pub scale: [f32; 3],
 }
 
 impl Transform {
-    /// The identity.
+    /// The transform that changes nothing.
     pub const IDENTITY: Self =
         Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0], scale: [1.0; 3] };
 
-    /// A transform that only translates.
+    /// Builds a transform that only translates.
     pub fn from_translation(translation: [f32; 3]) -> Self {
         Self { translation, ..Self::IDENTITY }
     }
 
-    /// The same transform in f64, with its rotation normalized.
+    /// Converts the transform to an affine matrix in f64, with its rotation normalized.
     pub(crate) fn wide(&self) -> glam::DAffine3 {
         let [scale, translation] =
             [self.scale, self.translation].map(|vector| glam::DVec3::from(vector.map(f64::from)));
@@ -34,11 +34,11 @@ impl Transform {
         glam::DAffine3::from_scale_rotation_translation(scale, rotation, translation)
     }
 
-    /// Returns the transform with its rotation normalized.
+    /// Checks the transform, and returns it with its rotation normalized.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, and for a rotation shorter than [`SHORTEST`]; `path` precedes the field's
-    /// name.
+    /// [`InputError`] for values that are not finite, and for a rotation shorter than [`SHORTEST`]. In the path of the error,
+    /// `path` precedes the field's name.
     pub fn checked(self, path: &str) -> Result<Self, InputError> {
         finite(&format!("{path}.translation"), &self.translation)?;
         finite(&format!("{path}.scale"), &self.scale)?;
@@ -52,12 +52,12 @@ impl Default for Transform {
     }
 }
 
-/// Refuses values that are not finite; the error names the first with its index.
+/// Refuses values that are not finite. The error names the first of these with its index.
 pub(crate) fn finite(path: &str, values: &[f32]) -> Result<(), InputError> {
     InputError::check_each(path, values, |value| value.is_finite(), "must be finite")
 }
 
-/// Returns the quaternion scaled to length 1.
+/// Returns the quaternion scaled to length 1. Refuses a quaternion without a direction; `path` names it.
 pub(crate) fn unit(path: &str, quaternion: [f32; 4]) -> Result<[f32; 4], InputError> {
     finite(path, &quaternion)?;
     let wide = quaternion.map(f64::from);
@@ -69,21 +69,20 @@ pub(crate) fn unit(path: &str, quaternion: [f32; 4]) -> Result<[f32; 4], InputEr
     Ok(wide.map(|component| (component / length) as f32))
 }
 
-/// First three rows of an affine 4×4 matrix: component r of `m · (p, 1)` is the dot product with `m[r]`. Palettes have this
-/// layout, three `vec4` per bone.
+/// First three rows of an affine 4×4 matrix; the last row is 0 0 0 1. Component r of `m · (p, 1)` is the dot product of `m[r]`
+/// and (p, 1). Palettes have this layout, three `vec4` per bone.
 pub type Affine = [[f32; 4]; 3];
 
-/// The identity.
+/// The affine matrix that changes nothing.
 pub const AFFINE_IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-/// All sixteen values of an affine matrix, in column-major order.
+/// Returns all sixteen components of an affine matrix, in column-major order.
 pub fn column_major(affine: &Affine) -> [f32; 16] {
     let row = |row: usize, column: usize| if row < 3 { affine[row][column] } else { f32::from(column == 3) };
     std::array::from_fn(|index| row(index % 4, index / 4))
 }
 
-/// Decomposes a column-major matrix into translation, rotation and scale. A mirrored matrix gets a negative x
-/// scale.
+/// Decomposes a column-major matrix into translation, rotation and scale. A matrix that mirrors gets a negative x scale.
 ///
 /// # Errors
 /// [`InputError`] for values that are not finite, for a last row other than 0 0 0 1, and for shear.
@@ -115,10 +114,11 @@ pub(crate) fn decomposed(path: &str, matrix: &[f32; 16]) -> Result<Transform, In
     })
 }
 
-/// Largest difference between a matrix and the product of its parts, relative to its largest scale.
+/// Largest allowed difference between a matrix and the product of its translation, rotation and scale, relative to the largest
+/// scale.
 const SHEAR: f64 = 1e-3;
 
-/// Unit axes of a matrix; axes with zero scale are chosen at right angles to the others.
+/// Unit axes of a matrix. An axis with a scale of 0 is chosen at right angles to the others.
 fn completed(columns: [glam::DVec3; 3], scale: [f64; 3], largest: f64) -> [glam::DVec3; 3] {
     let zero = glam::DVec3::ZERO;
     let unit = |axis: usize| if scale[axis] > 1e-12 * largest { columns[axis] / scale[axis] } else { zero };
@@ -138,7 +138,7 @@ fn completed(columns: [glam::DVec3; 3], scale: [f64; 3], largest: f64) -> [glam:
     axes
 }
 
-/// The first three rows of a column-major matrix.
+/// Returns the first three rows of a column-major matrix.
 pub fn rows(matrix: &[f32; 16]) -> Affine {
     std::array::from_fn(|row| std::array::from_fn(|column| matrix[4 * column + row]))
 }

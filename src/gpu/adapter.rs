@@ -1,29 +1,29 @@
-//! Selection of an adapter by name or kind.
+//! Selection of a GPU adapter by name or kind.
 
 use super::GpuError;
 
-/// The environment variable that selects an adapter when [`Options::adapter`] does not.
+/// The environment variable that selects an adapter if [`Options::adapter`] is `None`.
 pub(crate) const ADAPTER_VARIABLE: &str = "RELIEVO_ADAPTER";
 
-/// How to choose an adapter.
+/// Selection of an adapter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Options {
-    /// A kind (`discrete`, `integrated`, `virtual`, `cpu`), or a part of the adapter's name or driver, in any
-    /// case (`llvmpipe`, `swiftshader`, `H200`). Default: the variable `RELIEVO_ADAPTER`, or else the fastest
-    /// kind available.
+    /// A kind (`discrete`, `integrated`, `virtual`, `cpu`), or a part of the adapter's name or driver (`llvmpipe`,
+    /// `swiftshader`, `H200`). Upper and lower case are equal. If it is `None`, the environment variable `RELIEVO_ADAPTER`
+    /// decides, or else the fastest available kind is used.
     pub adapter: Option<String>,
 }
 
-/// Name, kind and driver of an adapter, as reports and goldens quote them.
+/// Name, kind, driver and backend of an adapter, as reports and stored reference results quote them.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct AdapterSummary {
-    /// The adapter's name.
+    /// Name of the adapter, as the driver states it.
     pub name: String,
-    /// `discrete`, `integrated`, `virtual`, `cpu` or `other`.
+    /// Kind of the adapter: `discrete`, `integrated`, `virtual`, `cpu` or `other`.
     pub kind: &'static str,
-    /// The driver's name and version.
+    /// Name and version of the driver.
     pub driver: String,
-    /// `Vulkan`, `Metal`, `Dx12`, `Gl` or `BrowserWebGpu`.
+    /// Graphics API: `Vulkan`, `Metal`, `Dx12`, `Gl` or `BrowserWebGpu`.
     pub backend: String,
 }
 
@@ -40,7 +40,7 @@ impl AdapterSummary {
         Self { name: info.name.clone(), kind, driver, backend: format!("{:?}", info.backend) }
     }
 
-    /// Whether the adapter is a program on the CPU, such as lavapipe or SwiftShader.
+    /// Whether the adapter renders on the CPU, like lavapipe or SwiftShader.
     pub fn is_software(&self) -> bool {
         self.kind == "cpu"
     }
@@ -52,7 +52,7 @@ impl AdapterSummary {
             || self.driver.to_lowercase().contains(&wanted)
     }
 
-    // The fastest kind ranks first.
+    // Position of the adapter's kind in a ranking by speed; 0 is the fastest.
     fn rank(&self) -> usize {
         let kinds = ["discrete", "integrated", "virtual", "cpu", "other"];
         kinds.iter().position(|kind| *kind == self.kind).unwrap_or(kinds.len())
@@ -65,7 +65,7 @@ impl std::fmt::Display for AdapterSummary {
     }
 }
 
-/// All adapters of this machine; the default one comes first.
+/// Lists all adapters of this machine, the fastest kind first. The first adapter is the default.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn adapters() -> Vec<AdapterSummary> {
     let mut all: Vec<_> = (pollster::block_on(enumerate()).iter())
@@ -76,13 +76,13 @@ pub fn adapters() -> Vec<AdapterSummary> {
 }
 
 async fn enumerate() -> Vec<wgpu::Adapter> {
-    // GL is the last resort: its drivers have poor compute support and look for a window system.
+    // GL is the last resort. Its drivers have poor compute support, and they look for a window system.
     let native = enumerate_on(wgpu::Backends::all() - wgpu::Backends::GL).await;
     if native.is_empty() { enumerate_on(wgpu::Backends::GL).await } else { native }
 }
 
 async fn enumerate_on(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
-    // No validation layers and no GPU-assisted validation, which corrupts shaders on lavapipe.
+    // Validation layers are off. GPU-assisted validation is off, too: it corrupts shaders on lavapipe.
     let descriptor = wgpu::InstanceDescriptor {
         backends,
         flags: wgpu::InstanceFlags::empty(),

@@ -1,10 +1,10 @@
-//! Building blocks of the generated bindings; see `gpu::bindings`.
+//! Typed resources that the generated bindings use; see `gpu::bindings`.
 
 use std::marker::PhantomData;
 
 use super::Buffer;
 
-/// The names that generated code uses.
+/// The names that the generated bindings import.
 pub(crate) mod prelude {
     pub(crate) use super::Slice;
     pub(crate) use crate::gpu::{
@@ -12,7 +12,7 @@ pub(crate) mod prelude {
     };
 }
 
-/// A storage buffer as a resource to bind, typed by its elements.
+/// A storage buffer to bind in a bind group, with its element type.
 #[derive(Debug)]
 pub struct Slice<'a, T> {
     raw: &'a wgpu::Buffer,
@@ -28,13 +28,13 @@ impl<T> Clone for Slice<'_, T> {
 impl<T> Copy for Slice<'_, T> {}
 
 impl<'a, T> Slice<'a, T> {
-    /// The whole buffer.
+    /// Returns the whole buffer as a resource to bind.
     pub fn resource(&self) -> wgpu::BindingResource<'a> {
         self.raw.as_entire_binding()
     }
 
-    /// The same bytes as elements of another type, as a shader declares them. One type's size must be a multiple of the
-    /// other's.
+    /// Returns the same bytes as elements of type `U`, as a shader declares them. The size of one type must be a multiple of
+    /// the other's.
     pub fn cast<U>(self) -> Slice<'a, U>
     where
         T: SeenAs<U>,
@@ -47,19 +47,19 @@ impl<'a, T> Slice<'a, T> {
     }
 }
 
-/// A type that a shader may read as elements of `U` with the same bytes, such as a matrix as its rows.
+/// A type whose bytes a shader may read as elements of `U`, for example a matrix as its rows.
 pub trait SeenAs<U> {}
 
-// A matrix as its rows.
+// A shader may read a matrix as its rows.
 impl<const N: usize> SeenAs<[f32; 4]> for [[f32; 4]; N] {}
-// A vector as its components.
+// A shader may read a vector as its components.
 impl<const N: usize> SeenAs<f32> for [f32; N] {}
-// Consecutive scalars as vectors.
+// A shader may read consecutive scalars as vectors.
 impl SeenAs<[u32; 4]> for u32 {}
 impl SeenAs<[f32; 4]> for f32 {}
 impl SeenAs<[i32; 4]> for i32 {}
 impl SeenAs<[i32; 4]> for [i32; 2] {}
-// Floats as their bits.
+// A shader may read floats as their bit patterns.
 impl SeenAs<[u32; 4]> for [f32; 4] {}
 impl<const N: usize> SeenAs<[u32; 4]> for [[f32; 4]; N] {}
 impl SeenAs<u32> for f32 {}
@@ -67,14 +67,14 @@ impl SeenAs<i32> for u32 {}
 impl<const N: usize> SeenAs<u32> for [f32; N] {}
 
 impl<T> Buffer<T> {
-    /// The buffer as a resource to bind.
+    /// Returns the buffer as a resource to bind.
     pub fn slice(&self) -> Slice<'_, T> {
         Slice { raw: &self.raw, element: PhantomData }
     }
 }
 
 impl<T: bytemuck::Pod> Buffer<T> {
-    /// The same buffer with elements of another type, as [`Slice::cast`].
+    /// Returns a handle to the same buffer with elements of another type; see [`Slice::cast`].
     pub fn cast<U>(&self) -> Buffer<U>
     where
         T: SeenAs<U>,

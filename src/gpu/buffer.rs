@@ -1,4 +1,4 @@
-//! Typed device buffers and their readback.
+//! Typed device buffers, and reading them back.
 
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -11,11 +11,11 @@ use super::readback::Readback;
 use super::{Gpu, GpuError};
 use crate::InputError;
 
-/// Granularity of buffer sizes in bytes.
+/// Granularity of buffer sizes, in bytes.
 const ROOM: usize = 16;
 
-/// A storage buffer of `len` elements. Usable as storage, vertex, index and indirect buffer, and as copy source and
-/// destination.
+/// A storage buffer of `len` elements. It is also usable as a vertex, index and indirect buffer, and as source and destination
+/// of copies.
 #[derive(Debug, Clone)]
 pub struct Buffer<T> {
     pub(super) raw: wgpu::Buffer,
@@ -25,13 +25,13 @@ pub struct Buffer<T> {
 }
 
 impl<T: bytemuck::Pod> Buffer<T> {
-    /// A buffer of zeros.
+    /// Creates a buffer of zeros.
     ///
-    /// An empty buffer has room for one element, because WebGPU binds no empty ranges. Every buffer has room for whole
-    /// vectors of four words, so kernels may read and write four words at a time.
+    /// An empty buffer is allocated with the size of one element, because WebGPU binds no empty ranges. Every size is rounded
+    /// up to a multiple of 16 bytes, so kernels may read and write four words at a time.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if it exceeds the largest binding, [`GpuError::OutOfMemory`].
+    /// [`GpuError::Limit`] if the buffer exceeds the largest storage binding; [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu, label: &'static str, len: usize) -> Result<Self, GpuError> {
         let size = (len.max(1) * size_of::<T>()).next_multiple_of(ROOM) as u64;
         if size > gpu.max_binding() {
@@ -58,21 +58,21 @@ impl<T: bytemuck::Pod> Buffer<T> {
         Ok(Self { raw, _held: Arc::new(gpu.memory().hold(label, size)), len, element: PhantomData })
     }
 
-    /// A buffer that holds `data`.
+    /// Creates a buffer that holds `data`.
     ///
     /// # Errors
-    /// As [`Buffer::new`].
+    /// The errors of [`Buffer::new`].
     pub fn from_slice(gpu: &Gpu, label: &'static str, data: &[T]) -> Result<Self, GpuError> {
         let buffer = Self::new(gpu, label, data.len())?;
         buffer.write(gpu, data)?;
         Ok(buffer)
     }
 
-    /// As [`Buffer::from_slice`], for data that never changes. On a deferring device the upload waits
+    /// Creates a buffer that holds `data` and never changes. On a deferring device, the upload waits until the program sends it
     /// ([`Gpu::deferring`]).
     ///
     /// # Errors
-    /// As [`Buffer::new`].
+    /// The errors of [`Buffer::new`].
     pub(crate) fn constant(gpu: &Gpu, label: &'static str, data: &[T]) -> Result<Self, GpuError> {
         let buffer = Self::new(gpu, label, data.len())?;
         gpu.fill_buffer(&buffer.raw, bytemuck::cast_slice(data))?;
@@ -82,15 +82,15 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// Replaces the first `data.len()` elements.
     ///
     /// # Errors
-    /// [`GpuError::Validation`] when `data` is longer than the buffer.
+    /// [`GpuError::Validation`] if `data` is longer than the buffer.
     pub fn write(&self, gpu: &Gpu, data: &[T]) -> Result<(), GpuError> {
         self.write_at(gpu, 0, data)
     }
 
-    /// Refuses elements beyond the buffer's end; the allocation may be larger.
+    /// Checks that `count` elements from `first` on lie in the buffer. The allocation may be larger than the buffer's `len`.
     ///
     /// # Errors
-    /// [`GpuError::Validation`].
+    /// [`GpuError::Validation`] if the elements reach beyond the buffer's end.
     pub(super) fn has(&self, first: usize, count: usize) -> Result<(), GpuError> {
         if first.saturating_add(count) > self.len() {
             let reason = format!("{count} elements from {first} on do not fit a buffer of {}", self.len());
@@ -99,38 +99,38 @@ impl<T: bytemuck::Pod> Buffer<T> {
         Ok(())
     }
 
-    /// Replaces `data.len()` elements, starting at `first`.
+    /// Replaces `data.len()` elements, starting at element `first`.
     ///
     /// # Errors
-    /// [`GpuError::Validation`] when they reach beyond the buffer's end.
+    /// [`GpuError::Validation`] if `data` reaches beyond the buffer's end.
     pub fn write_at(&self, gpu: &Gpu, first: usize, data: &[T]) -> Result<(), GpuError> {
         self.has(first, data.len())?;
         let offset = (first * size_of::<T>()) as u64;
         gpu.scoped(|| gpu.queue().write_buffer(&self.raw, offset, bytemuck::cast_slice(data)))
     }
 
-    /// Reads all elements back. The values include all work that was submitted before the first poll.
+    /// Reads all elements back. The values include all work that was submitted before the future is first polled.
     ///
-    /// The call never blocks: the future wakes when the device has answered. A browser's event loop drives it.
-    /// Elsewhere the program must poll the device, or the future never wakes: call
-    /// `gpu.device().poll(wgpu::PollType::Poll)` once per frame, or `Gpu::wait` on a thread of its own.
+    /// The call never blocks: the future wakes when the device has answered. In a browser, the event loop drives the future.
+    /// Elsewhere, the program must poll the device, or the future never wakes. Call `gpu.device().poll(wgpu::PollType::Poll)`
+    /// once per frame, or `Gpu::wait` on a separate thread.
     ///
     /// # Errors
-    /// Errors of the device.
+    /// Errors that the device reports.
     pub async fn read(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
         let answer = Readback::start(gpu, &self.raw, self.content_bytes())?.answer().await;
-        // The copy's own error is more precise than the failed map.
+        // The error of the copy itself is more precise than the error of the failed mapping.
         gpu.check_async().await?;
         let bytes = answer?;
-        // The mapped bytes may be unaligned, so the elements are copied and not cast in place.
+        // The mapped bytes may be unaligned. So the elements are copied, not cast in place.
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    /// As [`Buffer::read`], but blocks until the device has finished. Not available in browsers, where the answer never
-    /// arrives while a program waits.
+    /// Reads all elements back like [`Buffer::read`], but blocks until the device has finished. Not available in browsers,
+    /// where the answer never arrives while a program waits.
     ///
     /// # Errors
-    /// Errors of the device, or [`GpuError::Hung`].
+    /// Errors that the device reports, or [`GpuError::Hung`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
         gpu.block_on(self.read(gpu))
@@ -140,7 +140,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
         (self.len * size_of::<T>()) as u64
     }
 
-    /// The wgpu buffer.
+    /// The underlying wgpu buffer.
     pub fn raw(&self) -> &wgpu::Buffer {
         &self.raw
     }
@@ -150,12 +150,12 @@ impl<T: bytemuck::Pod> Buffer<T> {
         self.len
     }
 
-    /// Whether it has no elements.
+    /// Whether the buffer has no elements.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The same bytes as elements of another type.
+    /// Returns a handle to the same bytes, as elements of another type.
     pub(super) fn of_elements<U>(&self) -> Buffer<U> {
         let len = self.len * size_of::<T>() / size_of::<U>();
         Buffer { raw: self.raw.clone(), _held: self._held.clone(), len, element: PhantomData }
@@ -164,7 +164,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// Checks that the buffer holds at least `needed` elements.
     ///
     /// # Errors
-    /// [`InputError`] that names `field`.
+    /// [`InputError`] that names `field`, if the buffer holds fewer.
     pub fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
         if self.len >= needed {
             return Ok(());
@@ -173,13 +173,13 @@ impl<T: bytemuck::Pod> Buffer<T> {
         Err(InputError::new(field, value, format!("must hold at least {needed}")))
     }
 
-    /// Size of the buffer in bytes.
+    /// Allocated size of the buffer in bytes, including the rounding.
     pub fn bytes(&self) -> u64 {
         self.raw.size()
     }
 }
 
-/// A uniform buffer with WGSL's layout of `T`.
+/// A uniform buffer that holds one value of type `T`, in WGSL's layout.
 #[derive(Debug, Clone)]
 pub struct Uniform<T> {
     raw: wgpu::Buffer,
@@ -187,7 +187,7 @@ pub struct Uniform<T> {
 }
 
 impl<T: ShaderSize + WriteInto> Uniform<T> {
-    /// A uniform buffer that holds `value`.
+    /// Creates a uniform buffer that holds `value`.
     ///
     /// # Errors
     /// [`GpuError::OutOfMemory`].
@@ -205,25 +205,25 @@ impl<T: ShaderSize + WriteInto> Uniform<T> {
         Ok(uniform)
     }
 
-    /// Replaces the value.
+    /// Replaces the value in the buffer.
     ///
     /// # Errors
-    /// Errors of the device.
+    /// Errors that the device reports.
     pub fn write(&self, gpu: &Gpu, value: &T) -> Result<(), GpuError> {
         let bytes = uniform_bytes(value)?;
         gpu.scoped(|| gpu.queue().write_buffer(&self.raw, 0, &bytes))
     }
 
-    /// The wgpu buffer.
+    /// The underlying wgpu buffer.
     pub fn raw(&self) -> &wgpu::Buffer {
         &self.raw
     }
 }
 
-/// The bytes of `value` in WGSL's uniform layout.
+/// Encodes `value` in WGSL's layout for uniform buffers.
 ///
 /// # Errors
-/// [`GpuError::Internal`] when encase cannot write them.
+/// [`GpuError::Internal`] if encase cannot encode the value.
 pub(crate) fn uniform_bytes<T: ShaderSize + WriteInto>(value: &T) -> Result<Vec<u8>, GpuError> {
     let mut writer = UniformBuffer::new(Vec::new());
     writer.write(value).map_err(|error| GpuError::Internal { reason: error.to_string() })?;

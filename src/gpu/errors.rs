@@ -1,6 +1,6 @@
-//! Device errors: those of a call, from error scopes, and those that handlers receive later.
+//! Device errors. Error scopes catch the errors of a call; handlers receive all other errors later.
 //!
-//! Natively, a scope's error is known once the scope is popped. A browser reports it only after the calling task has
+//! Natively, a scope's error is known once the scope is popped. A browser reports the error only after the calling task has
 //! returned. There, a call that allocates or compiles succeeds, and the next call returns its error.
 
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -17,7 +17,7 @@ pub(super) struct Errors(Arc<Mutex<Heard>>);
 struct Heard {
     lost: Option<String>,
     error: Option<GpuError>,
-    /// Numbers of scopes that were popped and of scopes whose error is known. Answers come in the scopes' order.
+    /// Number of scopes that were popped, and number of scopes whose error is known. Answers arrive in the order of the scopes.
     #[cfg(any(test, target_arch = "wasm32"))]
     answers: [u64; 2],
     #[cfg(any(test, target_arch = "wasm32"))]
@@ -29,14 +29,14 @@ impl Errors {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Receives errors outside of error scopes, in place of earlier handlers.
+    /// Registers a handler for errors outside of error scopes. The handler replaces earlier handlers.
     pub fn listen(&self, device: &wgpu::Device) {
         let errors = self.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| errors.hear(error.into())));
         self.listen_for_loss(device);
     }
 
-    /// Receives the loss of the device. In a browser other callbacks stay in place.
+    /// Registers a handler for the loss of the device. In a browser, other handlers stay registered.
     pub fn listen_for_loss(&self, device: &wgpu::Device) {
         let errors = self.clone();
         device.set_device_lost_callback(move |reason, message| {
@@ -44,17 +44,17 @@ impl Errors {
         });
     }
 
-    /// Remembers that the device is lost, with the first reason.
+    /// Remembers that the device is lost. The first reason is kept.
     fn lose(&self, reason: &str) {
         self.lock().lost.get_or_insert_with(|| reason.to_owned());
     }
 
-    /// Keeps the first error.
+    /// Remembers an error, unless an earlier one has not been returned yet.
     fn hear(&self, error: GpuError) {
         self.lock().error.get_or_insert(error);
     }
 
-    /// Returns the error once. A lost device stays lost: all later calls fail too.
+    /// Returns a remembered error once. After the loss of the device, every call returns an error.
     fn check(&self) -> Result<(), GpuError> {
         self.check_loss()?;
         self.lock().error.take().map_or(Ok(()), Err)
@@ -65,13 +65,13 @@ impl Errors {
         lost.map_or(Ok(()), |reason| Err(GpuError::DeviceLost { reason }))
     }
 
-    /// Counts a scope whose error is not known yet.
+    /// Counts a popped scope whose error is not known yet.
     #[cfg(any(test, target_arch = "wasm32"))]
     fn ask(&self) {
         self.lock().answers[0] += 1;
     }
 
-    /// Receives the answer to the oldest scope without one.
+    /// Receives the error, if any, of the oldest scope whose error was not known.
     #[cfg(any(test, target_arch = "wasm32"))]
     fn answer(&self, error: Option<GpuError>) {
         if let Some(error) = error {
@@ -80,12 +80,12 @@ impl Errors {
         let mut heard = self.lock();
         heard.answers[1] += 1;
         let waiting = std::mem::take(&mut heard.waiting);
-        // Wakers may poll immediately.
+        // The lock is released first, because a woken task may poll immediately.
         drop(heard);
         waiting.into_iter().for_each(Waker::wake);
     }
 
-    /// Completes once the errors of all scopes that were popped before the call are known.
+    /// Completes once the errors are known of all scopes that were popped before the call.
     #[cfg(any(test, target_arch = "wasm32"))]
     async fn answered(&self) {
         let asked = self.lock().answers[0];
@@ -102,21 +102,21 @@ impl Errors {
 }
 
 impl Gpu {
-    /// Checks for errors that the device reported outside of the call that caused them.
+    /// Checks for errors that the device reported outside of the calls that caused them.
     ///
-    /// In a browser, these include errors of calls that allocate or compile, which it reports late
-    /// ([`Gpu::check_async`]). The loss of the device is among them, no matter who opened it. Errors of the embedding
-    /// program's own calls on its own device ([`Gpu::from_wgpu`]) go only to the program's handlers.
+    /// The loss of the device is always reported. In a browser, so are errors of calls that allocate or compile, which the
+    /// browser reports late ([`Gpu::check_async`]). If an embedding program opened the device ([`Gpu::from_wgpu`]), errors of
+    /// the program's own calls go only to the program's handlers.
     ///
     /// # Errors
-    /// The first of these errors. Every call returns [`GpuError::DeviceLost`] once the device is lost; any other error
+    /// The first of these errors. [`GpuError::DeviceLost`] is returned by every call once the device is lost. Any other error
     /// is returned once.
     pub fn check(&self) -> Result<(), GpuError> {
         self.errors.check()?;
         self.check_loss()
     }
 
-    /// Checks whether the device is lost. It sets no callback, so the embedding program's stays in place.
+    /// Checks whether the device is lost. No callback is set, so the embedding program's callback stays in place.
     ///
     /// # Errors
     /// [`GpuError::DeviceLost`].
@@ -128,21 +128,21 @@ impl Gpu {
         self.errors.check_loss()
     }
 
-    /// As [`Gpu::check`], but waits until the errors of all earlier calls are known: in a browser a few tasks of its
-    /// event loop, elsewhere no time.
+    /// Waits until the errors of all earlier calls are known, then checks for errors like [`Gpu::check`]. In a browser, the
+    /// wait takes a few tasks of the event loop; elsewhere it takes no time.
     ///
     /// # Errors
-    /// As [`Gpu::check`].
+    /// The errors of [`Gpu::check`].
     pub async fn check_async(&self) -> Result<(), GpuError> {
         #[cfg(target_arch = "wasm32")]
         self.errors.answered().await;
         self.check()
     }
 
-    /// Runs `work` and returns the errors that wgpu reports for it. A browser reports them later, to [`Gpu::check`].
+    /// Runs `work` and returns the errors that wgpu reports for it. A browser reports these errors later, to [`Gpu::check`].
     ///
     /// # Errors
-    /// Out of memory, validation and internal errors caused by `work`, and those of [`Gpu::check`].
+    /// Out-of-memory, validation and internal errors that `work` causes, and the errors of [`Gpu::check`].
     pub fn scoped<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
         self.errors.check()?;
         let scopes =
@@ -153,10 +153,10 @@ impl Gpu {
         Ok(done)
     }
 
-    /// Pops nested scopes.
+    /// Pops nested error scopes.
     ///
     /// # Errors
-    /// Their first error, from the innermost outwards.
+    /// The first error that a scope caught, from the innermost scope outwards.
     #[cfg(not(target_arch = "wasm32"))]
     fn pop(&self, scopes: [wgpu::ErrorScopeGuard; 3]) -> Result<(), GpuError> {
         let mut first = None;
@@ -164,15 +164,15 @@ impl Gpu {
             let error = pollster::block_on(scope.pop());
             first = first.or(error);
         }
-        // A lost device ignores calls, and may report dependent objects as invalid.
+        // Loss is checked first: a lost device ignores calls, and may report dependent objects as invalid.
         self.check_loss()?;
         first.map_or(Ok(()), |error| Err(GpuError::from(error)))
     }
 
-    /// Pops nested scopes. The browser reports their errors later.
+    /// Pops nested error scopes. The browser reports their errors later.
     #[cfg(target_arch = "wasm32")]
     fn pop(&self, scopes: [wgpu::ErrorScopeGuard; 3]) -> Result<(), GpuError> {
-        // Popping takes effect now; its answer comes later.
+        // The scopes are popped immediately; the browser tells their errors later.
         let answers: Vec<_> = scopes.into_iter().rev().map(wgpu::ErrorScopeGuard::pop).collect();
         let errors = self.errors.clone();
         errors.ask();
@@ -197,7 +197,7 @@ mod tests {
         GpuError::Internal { reason: reason.to_owned() }
     }
 
-    /// As in a browser, answers come later, in the order of the scopes.
+    /// Answers arrive after the calls, in the order of the scopes, as in a browser.
     #[test]
     fn late_answers_complete_those_who_asked_before() {
         let errors = Errors::default();

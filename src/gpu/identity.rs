@@ -1,15 +1,18 @@
-//! Identity of devices, and detection of a lost device.
+//! Tells whether two handles belong to the same device, and whether a device is lost.
 //!
-//! wgpu compares handles by identifiers that each [`wgpu::Instance`] counts on its own, so devices of two instances may
-//! compare equal. It panics if a resource of one instance is used in another. It has no query for either question.
-//! Natively, a call that a working device refuses gives the answer: it shows whose error scope catches the error.
+//! wgpu compares handles by identifiers that each [`wgpu::Instance`] counts separately, so devices of two instances may compare
+//! equal. wgpu panics if a resource of one instance is used in another. It has no query for the instance of a device or for its
+//! loss.
+//!
+//! Natively, a call that a working device refuses answers both questions. The error scope that catches the error belongs to the
+//! called device. If no scope catches an error, the device is lost.
 
 #[cfg(target_arch = "wasm32")]
 pub(super) use browser::{Identity, caught};
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) use native::{Identity, caught, is_lost};
 
-/// In a browser, identifiers are unique, and misuse gives errors instead of panics.
+/// Browser version. There, identifiers are unique, and misuse gives errors instead of panics.
 #[cfg(target_arch = "wasm32")]
 mod browser {
     #[derive(Debug, Clone, PartialEq)]
@@ -36,10 +39,10 @@ mod native {
     use std::sync::atomic::{AtomicU32, Ordering};
     use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
-    /// The devices of all [`Gpu`](crate::gpu::Gpu)s.
+    /// The device of every living [`Gpu`](crate::gpu::Gpu).
     static KNOWN: Mutex<Vec<Weak<Device>>> = Mutex::new(Vec::new());
 
-    /// A device; equal for all of its handles.
+    /// Identity of a device; equal for all handles to the same device.
     #[derive(Debug, Clone)]
     pub struct Identity(Arc<Device>);
 
@@ -67,32 +70,33 @@ mod native {
             }))
         }
 
-        /// Whether an encoder or a pass, to which `record` gives a buffer, can record resources of this device.
+        /// Whether an encoder or a pass can record resources of this device. The closure `record` records a use of the given
+        /// buffer.
         ///
-        /// wgpu panics for an identifier unknown to the encoder's instance. The panic is caught here, before anything
-        /// else is recorded. The program's panic hook sees it.
+        /// wgpu panics for an identifier that is unknown to the encoder's instance. The panic is caught here, before anything
+        /// else is recorded. The program's panic hook runs.
         pub fn is_taken<'a>(&'a self, record: impl FnOnce(&'a wgpu::Buffer)) -> bool {
             let probe = self.0.probe.get_or_init(|| probe(&self.0.device));
             caught(|| record(probe)).is_some()
         }
     }
 
-    /// The result of `work`, or `None` if wgpu panics in it because it used a resource of another instance.
+    /// Returns the result of `work`; `None` if wgpu panics because `work` used a resource of another instance.
     pub fn caught<T>(work: impl FnOnce() -> T) -> Option<T> {
         catch_unwind(AssertUnwindSafe(work)).ok()
     }
 
-    /// Counts the probes of the process.
+    /// Number of probe buffers that the process has created.
     static PROBES: AtomicU32 = AtomicU32::new(0);
 
-    /// Difference between the identifiers of successive probes.
+    /// Distance between the identifiers of successive probe buffers.
     const STEP: u32 = 16;
 
-    /// Number of probes after which the identifiers repeat.
+    /// Number of probe buffers after which identifiers repeat.
     const PROBES_APART: u32 = 64;
 
-    /// A buffer whose identifier exists in no other instance. wgpu counts the uses of each slot; this slot is used more
-    /// often than others, by another count for each probe.
+    /// Creates a buffer whose identifier exists in no other instance. An identifier contains how often its slot in wgpu was
+    /// used. The slot of the probe is used more often than other slots, and a different number of times for each probe.
     fn probe(device: &wgpu::Device) -> wgpu::Buffer {
         let number = 1 + PROBES.fetch_add(1, Ordering::Relaxed) % PROBES_APART;
         let descriptor = wgpu::BufferDescriptor {
@@ -122,12 +126,12 @@ mod native {
         pollster::block_on(scope.pop()).is_none()
     }
 
-    /// Whether two handles belong to the same working device.
+    /// Whether two handles belong to the same device, and the device works.
     fn is_same(one: &wgpu::Device, other: &wgpu::Device) -> bool {
         if one != other {
             return false;
         }
-        // Hides the error from the other device's handlers, in case it is another device.
+        // This scope hides the error from the handlers of `other`, if `other` is a different device.
         let outer = other.push_error_scope(wgpu::ErrorFilter::Validation);
         let inner = one.push_error_scope(wgpu::ErrorFilter::Validation);
         refused(other);
@@ -144,7 +148,7 @@ mod native {
             Gpu::headless(&Options::default()).expect("the suite needs an adapter")
         }
 
-        /// Handles of devices from two instances, created alike, compare equal.
+        /// Handles to devices of two instances, opened in the same way, compare equal in wgpu.
         #[test]
         fn devices_of_two_instances_differ() {
             let [one, two] = [gpu(), gpu()];
@@ -161,7 +165,7 @@ mod native {
             for (taker, maker) in [(&one, &one), (&one, &two), (&two, &one), (&two, &two)] {
                 let mut encoder = maker.encoder("probed");
                 assert_eq!(taker.check_encoder(&mut encoder).is_ok(), taker.is_same_device(maker));
-                // The encoder keeps recording normally.
+                // The encoder is still usable after the caught panic.
                 maker.scoped(|| maker.queue().submit([encoder.finish()])).expect("a valid encoder");
             }
         }

@@ -1,4 +1,4 @@
-//! Jobs: dispatches that are prepared once and recorded every frame.
+//! Jobs: sequences of dispatches that are prepared once and recorded every frame.
 
 use super::kernel::{Group, Kernel};
 use super::{Gpu, GpuError, Uniform};
@@ -11,11 +11,11 @@ pub struct Step {
     workgroups: Workgroups,
 }
 
-/// Workgroups along x, y and z.
+/// Number of workgroups of a dispatch.
 #[derive(Debug, Clone)]
 enum Workgroups {
     Of([u32; 3]),
-    /// Workgroup counts that a kernel writes into a buffer, from this byte on.
+    /// Indirect dispatch: a kernel writes the three counts into this buffer, from this byte on.
     Written(wgpu::Buffer, u64),
 }
 
@@ -24,19 +24,20 @@ impl Step {
         Self { kernel: kernel.clone(), groups, workgroups }
     }
 
-    /// A dispatch of `invocations` threads, numbered across all workgroups ([`Kernel::spread`]).
+    /// Creates a dispatch of `invocations` threads. Threads are numbered across all workgroups ([`Kernel::spread`]).
     pub fn spread(gpu: &Gpu, kernel: &Kernel, groups: Vec<Group>, invocations: u32) -> Self {
         Self::new(kernel, groups, Workgroups::Of(kernel.spread(gpu, invocations)))
     }
 
-    /// A dispatch of at least this many threads along x, y and z, rounded up to whole workgroups.
+    /// Creates a dispatch of at least `threads` threads along x, y and z, rounded up to whole workgroups.
     pub fn covering(kernel: &Kernel, groups: Vec<Group>, threads: [u32; 3]) -> Self {
         let size = kernel.workgroup_size();
         let workgroups = std::array::from_fn(|axis| threads[axis].div_ceil(size[axis]));
         Self::new(kernel, groups, Workgroups::Of(workgroups))
     }
 
-    /// A dispatch whose workgroup counts along x, y and z a kernel writes into `arguments`, from byte `offset` on.
+    /// Creates an indirect dispatch. A kernel writes the workgroup counts along x, y and z into `arguments`, from byte `offset`
+    /// on.
     pub(crate) fn indirect(kernel: &Kernel, group: Group, arguments: &wgpu::Buffer, offset: u64) -> Self {
         Self::new(kernel, vec![group], Workgroups::Written(arguments.clone(), offset))
     }
@@ -52,23 +53,23 @@ impl Step {
         }
     }
 
-    /// The workgroup counts; zeros if a kernel writes them.
+    /// Workgroup counts along x, y and z; zeros for an indirect dispatch.
     fn workgroups(&self) -> [u32; 3] {
         if let Workgroups::Of(workgroups) = self.workgroups { workgroups } else { [0; 3] }
     }
 
-    /// Invocations of the dispatch; 0 if a kernel writes its workgroup counts.
+    /// Number of threads of the dispatch; 0 for an indirect dispatch.
     fn invocations(&self) -> u64 {
         let size = self.kernel.workgroup_size();
         self.workgroups().into_iter().chain(size).map(u64::from).fold(1, u64::saturating_mul)
     }
 }
 
-/// The number of invocations after which [`Job::run_async`] submits: some tenths of a second on a slow GPU. Operating
-/// systems abort work that takes seconds.
+/// Number of threads after which [`Job::run_async`] submits. They take some tenths of a second on a slow GPU. Operating systems
+/// abort work that takes seconds.
 const INVOCATIONS_A_SUBMISSION: u64 = 1 << 27;
 
-/// A prepared sequence of dispatches: built once, recorded any number of times without allocation.
+/// A prepared sequence of dispatches. It is built once, and recorded any number of times without allocation.
 #[derive(Debug, Clone)]
 pub struct Job {
     label: &'static str,
@@ -76,10 +77,10 @@ pub struct Job {
 }
 
 impl Job {
-    /// Checks the steps against the device's limits.
+    /// Builds a job from its steps, and checks these against the device's limits.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] when a dispatch is too large.
+    /// [`GpuError::Limit`] if a dispatch is too large.
     pub fn new(gpu: &Gpu, label: &'static str, steps: Vec<Step>) -> Result<Self, GpuError> {
         let available = gpu.device().limits().max_compute_workgroups_per_dimension;
         let needed = steps.iter().flat_map(Step::workgroups).max().unwrap_or(0);
@@ -95,10 +96,10 @@ impl Job {
         Ok(Self { label, steps })
     }
 
-    /// A single dispatch with one bind group for at least `invocations` threads, as [`Step::spread`].
+    /// Builds a job of a single dispatch with one bind group, for at least `invocations` threads ([`Step::spread`]).
     ///
     /// # Errors
-    /// As [`Job::new`].
+    /// The errors of [`Job::new`].
     pub fn spread(
         gpu: &Gpu,
         label: &'static str,
@@ -109,35 +110,36 @@ impl Job {
         Self::new(gpu, label, vec![Step::spread(gpu, kernel, vec![group], invocations)])
     }
 
-    /// Records one compute pass with all steps, in order.
+    /// Records all steps, in order, in a new compute pass.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, self.label));
     }
 
-    /// Adds all steps, in order, to a compute pass that is being recorded.
+    /// Records all steps, in order, in an open compute pass.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.steps.iter().for_each(|step| step.dispatch(pass));
     }
 
-    /// Runs all steps and waits. A long job is split into several submissions, so that none takes seconds on a slow
-    /// GPU: operating systems abort such work.
+    /// Runs all steps and waits until the device has finished. A long job is split into several submissions, so that none takes
+    /// seconds on a slow GPU: operating systems abort such work.
     ///
     /// # Errors
-    /// Errors of the device.
+    /// Errors that the device reports.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn run(&self, gpu: &Gpu) -> Result<(), GpuError> {
         gpu.block_on(self.run_async(gpu))
     }
 
-    /// As `Job::run`, but completes once the device has finished; see [`Gpu::wait_async`].
+    /// Runs all steps, and completes once the device has finished; see [`Gpu::wait_async`]. Long jobs are split into several
+    /// submissions, as in `Job::run`.
     ///
     /// # Errors
-    /// Errors of the device.
+    /// Errors that the device reports.
     pub async fn run_async(&self, gpu: &Gpu) -> Result<(), GpuError> {
         self.run_split(gpu, INVOCATIONS_A_SUBMISSION).await
     }
 
-    /// As [`Job::run_async`], in submissions of at most `most` invocations each, or of one step.
+    /// Runs all steps in submissions of at most `most` threads each. A step with more threads is submitted alone.
     async fn run_split(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
         for steps in self.submissions(most) {
             let record = |encoder: &mut wgpu::CommandEncoder| {
@@ -149,7 +151,7 @@ impl Job {
         Ok(())
     }
 
-    /// The steps of each submission: at most `most` invocations, or one step.
+    /// Groups the steps into submissions of at most `most` threads each. A step with more threads is a submission by itself.
     fn submissions(&self, most: u64) -> Vec<&[Step]> {
         let mut submissions = Vec::new();
         let (mut start, mut work) = (0, 0_u64);
@@ -166,7 +168,7 @@ impl Job {
     }
 }
 
-/// A job and the kernel parameters that change between submissions.
+/// A job, with kernel parameters that may change between submissions.
 #[derive(Debug, Clone)]
 pub struct ParamsJob<T> {
     pub(crate) params: T,
@@ -175,12 +177,12 @@ pub struct ParamsJob<T> {
 }
 
 impl<T> ParamsJob<T> {
-    /// As [`Job::record`].
+    /// Records all steps, in order, in a new compute pass.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.job.record(encoder);
     }
 
-    /// As [`Job::dispatch`].
+    /// Records all steps, in order, in an open compute pass.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.job.dispatch(pass);
     }

@@ -1,4 +1,4 @@
-//! Compute pipelines and bind groups, with layouts from the manifest that `build.rs` writes.
+//! Compute pipelines and bind groups. Their layouts come from the manifest that `build.rs` writes.
 
 use super::shaders::{Binding, BindingKind, Shader, Stage};
 use super::{Gpu, GpuError, Program};
@@ -15,11 +15,11 @@ pub struct Kernel {
 pub type Group = wgpu::BindGroup;
 
 impl Kernel {
-    /// Compiles the pipeline; if this device compiled it before, returns that one. `constants` sets all override
-    /// constants, as `gpu::bindings` lists them.
+    /// Compiles the pipeline, or returns the pipeline that this device compiled before with the same constants. `constants`
+    /// sets all override constants, as `gpu::bindings` lists them.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Errors of the driver's compiler, and [`GpuError::Limit`] if the shader exceeds a limit of the device.
     pub fn new(
         gpu: &Gpu,
         shader: &'static Shader,
@@ -42,7 +42,7 @@ impl Kernel {
                 entry_point: None,
                 compilation_options: wgpu::PipelineCompilationOptions {
                     constants,
-                    // Every kernel writes workgroup memory before it reads it.
+                    // Zeroing is not needed: every kernel writes workgroup memory before it reads it.
                     zero_initialize_workgroup_memory: false,
                 },
                 cache: None,
@@ -51,10 +51,10 @@ impl Kernel {
         Ok(Self { shader, pipeline, layouts })
     }
 
-    /// Binds the resources of one group by their binding numbers, as `gpu::bindings` lists them.
+    /// Creates a bind group from resources and their binding numbers, as `gpu::bindings` lists them.
     ///
     /// # Errors
-    /// As [`Layouts::bind_group`].
+    /// The errors of [`Layouts::bind_group`].
     pub(crate) fn bind_group(
         &self,
         gpu: &Gpu,
@@ -65,23 +65,23 @@ impl Kernel {
         self.layouts.bind_group(gpu, shader, group, resources)
     }
 
-    /// Workgroup counts for `invocations` along x, spread over x and y if they exceed the limit of one dimension.
+    /// Workgroup counts for `invocations` threads along x. If one dimension cannot hold them, they are spread over x and y.
     pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
         rows_of_workgroups(gpu, self.groups_for(invocations).max(1))
     }
 
-    /// Workgroup size along x, y and z.
+    /// Number of threads per workgroup along x, y and z.
     pub fn workgroup_size(&self) -> [u32; 3] {
         self.shader.entry_points.first().map_or([1; 3], |entry| entry.workgroup_size)
     }
 
-    /// Number of workgroups for `invocations` along x.
+    /// Number of workgroups that `invocations` threads along x need.
     pub(crate) fn groups_for(&self, invocations: u32) -> u32 {
         invocations.div_ceil(self.workgroup_size()[0].max(1))
     }
 }
 
-/// The bind group layouts of a shader, one for every group up to the last that it uses.
+/// The bind group layouts of a shader: one per group, from 0 to the last group that the shader uses.
 #[derive(Debug, Clone)]
 pub struct Layouts {
     shader: &'static Shader,
@@ -89,7 +89,7 @@ pub struct Layouts {
 }
 
 impl Layouts {
-    /// As [`layouts`].
+    /// Creates the bind group layouts of `shader`.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the shader binds more than the device allows.
@@ -98,11 +98,11 @@ impl Layouts {
         Ok(Self { shader, groups: layouts(gpu, shader)? })
     }
 
-    /// Binds the resources of one group by their binding numbers, as `gpu::bindings` lists them.
+    /// Creates a bind group from resources and their binding numbers, as `gpu::bindings` lists them.
     ///
     /// # Errors
-    /// [`GpuError::Internal`] if the layouts belong to another shader, [`GpuError::Validation`] if the resources do not
-    /// match it.
+    /// [`GpuError::Internal`] if the layouts belong to another shader. [`GpuError::Validation`] if the resources do not match
+    /// the shader.
     pub(crate) fn bind_group(
         &self,
         gpu: &Gpu,
@@ -128,14 +128,14 @@ impl Layouts {
     }
 }
 
-/// Workgroup counts along x, y and z for `groups` in total, in rows as long as the device permits. The count along y is
-/// 0 for 0 groups.
+/// Workgroup counts along x, y and z for a total of at least `groups`, in rows as long as the device permits. For 0 groups, the
+/// count along y is 0.
 pub(crate) fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
     let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
     [x, groups.div_ceil(x), 1]
 }
 
-/// Compiles a shader.
+/// Creates the shader module from the WGSL text.
 fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
     gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(shader.name),
@@ -143,7 +143,7 @@ fn module(gpu: &Gpu, shader: &'static Shader) -> wgpu::ShaderModule {
     })
 }
 
-/// A pipeline layout of all groups.
+/// Creates a pipeline layout from the layouts of all bind groups.
 fn pipeline_layout(gpu: &Gpu, shader: &Shader, layouts: &[wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
     gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(shader.name),
@@ -152,7 +152,7 @@ fn pipeline_layout(gpu: &Gpu, shader: &Shader, layouts: &[wgpu::BindGroupLayout]
     })
 }
 
-/// The bind group layouts of a shader, one for every group up to the last that it uses.
+/// Creates the bind group layouts of a shader: one per group, from 0 to the last group that the shader uses.
 fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
     let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
     gpu.scoped(|| {

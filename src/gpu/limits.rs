@@ -3,14 +3,14 @@
 use super::shaders::{BindingKind, Shader, Stage};
 use super::{Gpu, GpuError};
 
-/// Advice for a device that was created with smaller limits.
+/// Advice in the error for a device that was created with smaller limits.
 const REMEDY: &str = "create the device with WebGPU's default limits (`wgpu::Limits::default()`)";
 
 impl Gpu {
-    /// Checks the shader's resources per stage and its workgroup size against the device's limits.
+    /// Checks the number of a shader's resources per stage, and its workgroup size, against the device's limits.
     ///
     /// # Errors
-    /// [`GpuError::Limit`].
+    /// [`GpuError::Limit`] that names the exceeded limit.
     pub(super) fn check_limits(&self, shader: &'static Shader) -> Result<(), GpuError> {
         let limits = self.device.limits();
         let check = |limit, needed: u32, available: u32| match needed <= available {

@@ -1,4 +1,4 @@
-//! Accounting of the bytes in a device's storage buffers.
+//! Accounting of the bytes that a device's storage buffers hold.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::GpuError;
 
-/// Bytes of every [`super::Buffer`] of a device and its clones: current and peak.
+/// Number of bytes in all [`super::Buffer`]s of a device: current, peak and limit. Clones of a buffer count once.
 #[derive(Debug)]
 pub struct Memory {
     now: AtomicU64,
@@ -23,33 +23,33 @@ impl Default for Memory {
 }
 
 impl Memory {
-    /// Bytes currently held.
+    /// Number of bytes currently allocated.
     pub fn now(&self) -> u64 {
         self.now.load(Ordering::SeqCst)
     }
 
-    /// The peak since the last call.
+    /// Returns the peak number of bytes since the last call.
     pub fn take_most(&self) -> u64 {
         self.most.swap(self.now(), Ordering::SeqCst)
     }
 
-    /// Bytes currently held per buffer label, in alphabetical order.
+    /// Number of bytes currently allocated for each buffer label, in alphabetical order of the labels.
     pub fn by_label(&self) -> Vec<(&'static str, u64)> {
         self.labels().iter().map(|(label, bytes)| (*label, *bytes)).collect()
     }
 
-    /// The largest number of bytes that may be held.
+    /// Largest number of bytes that may be allocated in total.
     pub fn limit(&self) -> u64 {
         self.limit.load(Ordering::SeqCst)
     }
 
-    /// Sets the largest number of bytes that may be held; at first there is no limit. A buffer that would exceed it is
-    /// refused with [`GpuError::OutOfMemory`], as when the device has no memory left. Existing buffers stay.
+    /// Sets the largest number of bytes that may be allocated in total; initially there is no limit. A buffer that would exceed
+    /// the limit is refused with [`GpuError::OutOfMemory`], as if the device had no memory left. Existing buffers stay.
     pub fn set_limit(&self, bytes: u64) {
         self.limit.store(bytes, Ordering::SeqCst);
     }
 
-    /// Checks that `bytes` more may be held.
+    /// Checks that `bytes` more bytes stay within the limit. `label` names the buffer in the error.
     pub(super) fn check(&self, label: &str, bytes: u64) -> Result<(), GpuError> {
         let (now, limit) = (self.now(), self.limit());
         if now.saturating_add(bytes) <= limit {
@@ -71,7 +71,7 @@ impl Memory {
     }
 }
 
-/// An allocation that counts until this value is dropped.
+/// An allocation. Its bytes are counted until this value is dropped.
 #[derive(Debug)]
 pub(super) struct Held {
     memory: Arc<Memory>,

@@ -1,12 +1,12 @@
-//! GPU access: opening a device or using the embedding program's; typed buffers, readback, kernels and timing. This is
-//! the only module that opens devices; `render` creates its textures and pipelines on them.
+//! GPU access: opens a device or uses the embedding program's device; typed buffers, readback, kernels and timing. Only this
+//! module opens devices; `render` creates textures and pipelines on them.
 //!
-//! Every failure is a [`GpuError`]: no adapter, a lost device, no memory, a validation error. Nothing in this module
-//! panics or aborts.
+//! Every failure is a [`GpuError`]: no adapter, a lost device, no memory, a validation error. Nothing in this module panics or
+//! aborts.
 //!
-//! Every function that waits for the device has two forms. One blocks; it does not exist on `wasm32`, because a browser
-//! forbids waiting. The other is a future whose name ends in `_async` (for reading, [`Buffer::read`]). It polls
-//! nothing: a browser drives it, and natively the program polls the device meanwhile. Further differences are
+//! Every function that waits for the device has two forms. One form blocks. It does not exist on `wasm32`, because a browser
+//! forbids waiting. The other form is a future whose name ends in `_async` (for reading, [`Buffer::read`]). The future does not
+//! poll the device: a browser drives it, and natively the program must poll the device meanwhile. Further differences are
 //! documented at the functions.
 
 mod adapter;
@@ -51,8 +51,8 @@ use errors::Errors;
 use identity::Identity;
 use shared::{Program, Shared};
 
-/// A device and its queue, with the properties of the adapter that relievo uses. Clones share the device and
-/// the pipelines compiled on it.
+/// A device and its queue, with the adapter's properties that relievo uses. Clones share the device and the pipelines compiled
+/// on it.
 #[derive(Debug, Clone)]
 pub struct Gpu {
     device: wgpu::Device,
@@ -62,27 +62,27 @@ pub struct Gpu {
     errors: Errors,
     memory: Arc<Memory>,
     kernels: Arc<Shared<Program, Kernel>>,
-    /// The deferred uploads of data that never changes, on a deferring device.
+    /// Deferred uploads of data that never changes; `None` unless the device is deferring.
     pending: Option<PendingUploads>,
 }
 
 impl Gpu {
-    /// Opens a new device without a window, with WebGPU's default limits. Storage bindings may be larger and more
-    /// numerous if the adapter permits it.
+    /// Opens a new device without a window, with WebGPU's default limits. Only buffers and storage bindings may be larger, as
+    /// far as the adapter permits.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter refuses WebGPU's
-    /// default limits.
+    /// [`GpuError::NoAdapter`] if no adapter matches `options`. [`GpuError::NoDevice`] if the adapter refuses WebGPU's default
+    /// limits.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn headless(options: &Options) -> Result<Self, GpuError> {
         pollster::block_on(Self::headless_async(options))
     }
 
-    /// As `Gpu::headless`, for programs that must not block. In a browser it is the only form.
+    /// Opens a new device like `Gpu::headless`, but without blocking. In a browser, this is the only form.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] when nothing matches `options`, [`GpuError::NoDevice`] when the adapter refuses WebGPU's
-    /// default limits.
+    /// [`GpuError::NoAdapter`] if no adapter matches `options`. [`GpuError::NoDevice`] if the adapter refuses WebGPU's default
+    /// limits.
     pub async fn headless_async(options: &Options) -> Result<Self, GpuError> {
         let adapter = adapter::choose(options).await?;
         let info = adapter.get_info();
@@ -100,12 +100,12 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Uses the device of an embedding program. The program's handlers of errors and of device loss stay in place: the
-    /// crate wraps its own calls in error scopes, and detects device loss without a handler.
+    /// Uses the device of an embedding program. The program's handlers for errors and for device loss stay in place: the crate
+    /// wraps its own calls in error scopes, and detects device loss without a handler.
     pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let info = device.adapter_info();
         let gpu = Self::new(device, queue, &info);
-        // A browser calls all of a device's callbacks.
+        // A browser calls every callback of a device, so the program's callback stays in effect.
         #[cfg(target_arch = "wasm32")]
         gpu.errors.listen_for_loss(&gpu.device);
         gpu
@@ -123,19 +123,20 @@ impl Gpu {
         self.identity == other.identity
     }
 
-    /// Whether an encoder or a pass can record this device's resources. `record` gives it a buffer of 4 bytes, as an
-    /// index buffer or to be cleared.
+    /// Whether an encoder or a pass can record this device's resources. The closure `record` gets a buffer of 4 bytes, which it
+    /// records as an index buffer or clears.
     ///
-    /// The result is `false` for encoders and passes of another [`wgpu::Instance`]. wgpu itself refuses another device
-    /// of the same instance.
+    /// The result is `false` for encoders and passes of another [`wgpu::Instance`]. wgpu itself refuses another device of the
+    /// same instance.
     pub(crate) fn is_taken<'a>(&'a self, record: impl FnOnce(&'a wgpu::Buffer)) -> bool {
         self.identity.is_taken(record)
     }
 
-    /// As [`Gpu::scoped`], for work with the caller's objects; `None` if they belong to another [`wgpu::Instance`].
+    /// Runs `work` with the caller's objects, and returns its errors like [`Gpu::scoped`]. `None` if the objects belong to
+    /// another [`wgpu::Instance`].
     ///
     /// # Errors
-    /// As [`Gpu::scoped`].
+    /// The errors of [`Gpu::scoped`].
     pub(crate) fn scoped_with<T>(&self, work: impl FnOnce() -> T) -> Result<Option<T>, GpuError> {
         identity::caught(|| self.scoped(work)).transpose()
     }
@@ -151,57 +152,58 @@ impl Gpu {
         }
     }
 
-    /// The wgpu device.
+    /// The underlying wgpu device.
     pub fn device(&self) -> &wgpu::Device {
         &self.device
     }
 
-    /// The wgpu queue.
+    /// The underlying wgpu queue.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
     }
 
-    /// Name, kind and driver of the adapter.
+    /// Name, kind, driver and backend of the adapter.
     pub fn adapter(&self) -> &AdapterSummary {
         &self.summary
     }
 
-    /// Accounting of the bytes that relievo's storage buffers hold on this device.
+    /// Number of bytes that relievo's storage buffers hold on this device.
     pub fn memory(&self) -> &Arc<Memory> {
         &self.memory
     }
 
-    /// The largest storage binding in bytes: at least WebGPU's default of 128 MiB, and a multiple of 16, as all
-    /// [`Buffer`] sizes are.
+    /// Largest size of a storage binding in bytes, at least WebGPU's default of 128 MiB. It is a multiple of 16, like all
+    /// [`Buffer`] sizes.
     pub fn max_binding(&self) -> u64 {
         let limits = self.device.limits();
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         most - most % 16
     }
 
-    /// An unmapped buffer. The caller holds an error scope.
+    /// Creates an unmapped buffer. The caller must hold an error scope.
     fn raw_buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
         let descriptor =
             wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
         self.device.create_buffer(&descriptor)
     }
 
-    /// A command encoder.
+    /// Creates a command encoder on this device.
     pub fn encoder(&self, label: &str) -> wgpu::CommandEncoder {
         self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
     }
 }
 
-/// The error for an encoder or a pass of another instance.
+/// Error for an encoder or a pass that belongs to another [`wgpu::Instance`].
 pub(crate) fn foreign(path: &str) -> InputError {
     let bound = "must be of the device on which the scene was made, or rebuilt";
     InputError::new(path, "of another wgpu::Instance", bound)
 }
 
-/// WebGPU's default limits, but the adapter's own limit of storage binding size, because some buffers cannot be split.
+/// Limits to request: WebGPU's defaults, but the adapter's own limit for storage bindings, because some buffers cannot be
+/// split.
 fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
     let default = wgpu::Limits::default();
-    // Shaders count words in u32, with a margin.
+    // Shaders count words in u32, with a margin, so a binding has fewer than 2^32 bytes.
     let most = u64::from(u32::MAX) / 4 * 4;
     let binding = offered.max_storage_buffer_binding_size.min(offered.max_buffer_size).min(most);
     wgpu::Limits {

@@ -1,15 +1,15 @@
-//! Deferred uploads of data that never changes. The program sends them in pieces of a given size.
+//! Deferred uploads of data that never changes. The program sends them in portions of a chosen size.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::{Gpu, GpuError};
 
-/// A queue of deferred uploads, first in, first out. Clones share it.
+/// A queue of deferred uploads, first in, first out. Clones share the queue.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PendingUploads(Arc<Mutex<VecDeque<Pending>>>);
 
-/// A deferred upload and its progress.
+/// A deferred upload, and the number of bytes already sent.
 #[derive(Debug)]
 struct Pending {
     to: Destination,
@@ -23,7 +23,7 @@ enum Destination {
     Texture(Level),
 }
 
-/// A mip level of one texture layer.
+/// Destination of an upload: one mip level of one texture layer.
 #[derive(Debug)]
 struct Level {
     texture: wgpu::Texture,
@@ -43,11 +43,11 @@ impl PendingUploads {
         self.all().iter().map(|pending| pending.bytes.len() - pending.sent).sum()
     }
 
-    /// Sends about `most` bytes, at least 1, with the queue's next submission, rounded up to whole words and texture
-    /// rows. Returns the number of bytes sent.
+    /// Sends about `most` bytes, at least 1, with the queue's next submission. The amount is rounded up to whole words and
+    /// texture rows. Returns the number of bytes sent.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] that the device reports.
     pub fn send(&self, gpu: &Gpu, most: usize) -> Result<usize, GpuError> {
         let mut all = self.all();
         let mut sent = 0;
@@ -81,7 +81,7 @@ impl Pending {
 }
 
 impl Level {
-    /// Writes whole rows, starting at `row`.
+    /// Writes `bytes` as whole texel rows, starting at row `row`.
     fn write(&self, queue: &wgpu::Queue, row: usize, bytes: &[u8]) {
         let Self { texture, mip_level, layer, width, bytes_per_row } = self;
         let origin = wgpu::Origin3d { x: 0, y: row as u32, z: *layer };
@@ -98,14 +98,14 @@ impl Level {
 }
 
 impl Gpu {
-    /// The same device in deferring mode, and its queue. Uploads of data that never changes
-    /// ([`super::Buffer::constant`], [`Gpu::fill_level`]) then wait in the queue.
+    /// Returns the same device in deferring mode, and the queue of its uploads. Uploads of data that never changes
+    /// ([`super::Buffer::constant`], [`Gpu::fill_level`]) then wait in the queue until they are sent.
     pub(crate) fn deferring(&self) -> (Self, PendingUploads) {
         let pending = PendingUploads::default();
         (Self { pending: Some(pending.clone()), ..self.clone() }, pending)
     }
 
-    /// Writes a whole buffer that never changes afterwards. Its size may be the number of bytes, rounded up.
+    /// Fills a buffer that never changes afterwards. The buffer may be larger than `bytes`, because its size is rounded up.
     pub(super) fn fill_buffer(&self, to: &wgpu::Buffer, bytes: &[u8]) -> Result<(), GpuError> {
         let Some(pending) = self.pending.as_ref().filter(|_| !bytes.is_empty()) else {
             return self.scoped(|| self.queue().write_buffer(to, 0, bytes));
@@ -115,7 +115,7 @@ impl Gpu {
         Ok(())
     }
 
-    /// Writes all texels of a mip level of one texture layer, which never change afterwards. The caller holds an error
+    /// Writes all texels of one mip level of one texture layer; they never change afterwards. The caller must hold an error
     /// scope.
     pub(crate) fn fill_level(&self, texture: &wgpu::Texture, [mip_level, layer]: [u32; 2], texels: &[u8]) {
         let width = (texture.width() >> mip_level).max(1);
@@ -136,7 +136,7 @@ mod tests {
     use super::*;
     use crate::gpu::{Buffer, Options};
 
-    /// However few bytes a turn sends, all data arrives in order, and none before it is sent.
+    /// For any number of bytes per send, all data arrives in order, and nothing arrives before it is sent.
     #[test]
     fn what_waits_arrives_piece_by_piece() {
         let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
@@ -164,7 +164,7 @@ mod tests {
         }
     }
 
-    /// Texture levels arrive in whole rows.
+    /// Mip levels of a texture arrive in whole rows of texels.
     #[test]
     fn textures_arrive_row_by_row() {
         let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
@@ -188,7 +188,7 @@ mod tests {
         while pending.len() > 0 {
             turns.push(pending.send(&gpu, 600).expect("sent"));
         }
-        // Two rows of 256 bytes; the remaining 88 bytes allow one more row.
+        // A send has two rows of 256 bytes; the remaining 88 bytes allow one more row.
         assert_eq!(turns.iter().sum::<usize>(), texels.len() + small.len());
         assert!(turns.iter().all(|bytes| (512..=768).contains(bytes) || *bytes == turns[turns.len() - 1]));
         let read = |mip_level: u32, layer: u32, [width, height]: [u32; 2]| {

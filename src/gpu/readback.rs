@@ -4,19 +4,19 @@ use futures_channel::oneshot::{Receiver, channel};
 
 use super::{Gpu, GpuError};
 
-/// A submitted copy and the receiver of its completion.
+/// A submitted copy from the device, with the receiver that learns of its completion.
 pub(super) struct Readback {
     staging: wgpu::Buffer,
     size: u64,
-    // `None` if there is nothing to read.
+    // Receiver of the mapping's result; `None` if there is nothing to read.
     mapped: Option<Receiver<Result<(), wgpu::BufferAsyncError>>>,
 }
 
 impl Readback {
-    /// Submits a copy of the first `size` bytes of `buffer`, and maps it.
+    /// Submits a copy of the first `size` bytes of `buffer`, and maps the copy for reading.
     ///
     /// # Errors
-    /// Errors of the device.
+    /// Errors that the device reports.
     pub(crate) fn start(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Self, GpuError> {
         let padded = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         gpu.scoped(|| {
@@ -30,14 +30,14 @@ impl Readback {
             gpu.queue().submit([encoder.finish()]);
             let (sender, receiver) = channel();
             staging.map_async(wgpu::MapMode::Read, .., move |result| {
-                // The receiver no longer exists if the caller gave up waiting.
+                // The receiver no longer exists if the caller has dropped the future.
                 let _ = sender.send(result);
             });
             Self { staging, size, mapped: Some(receiver) }
         })
     }
 
-    /// The bytes, once the device has answered. The future stays pending unless the device is polled.
+    /// Returns the copied bytes once the device has answered. The future stays pending until the device is polled.
     ///
     /// # Errors
     /// [`GpuError::DeviceLost`].

@@ -1,20 +1,20 @@
-//! A ring of readback buffers: device data arrives on the host some frames later, without a wait.
+//! A ring of readback buffers: data of the device arrives on the host some frames later, without blocking.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::{Gpu, GpuError};
 
-/// States of a slot.
+/// States of a buffer in the ring.
 const FREE: u32 = 0;
 const COMING: u32 = 1;
 const ARRIVED: u32 = 2;
 const FAILED: u32 = 3;
 
-/// A ring of mappable buffers of one size, for readback without waiting.
+/// A ring of mappable buffers of one size, for readback without blocking.
 ///
-/// A frame copies data into a free buffer, with a value that describes the copy. The data arrives once the device has
-/// executed the frame and was polled, as each submission does. Nothing is allocated after creation.
+/// A frame copies data into a free buffer, and stores a description of the copy with it. The data arrives once the device has
+/// executed the frame and was polled; every submission polls. Nothing is allocated after creation.
 #[derive(Debug)]
 pub struct ReadbackRing<T> {
     label: &'static str,
@@ -27,23 +27,23 @@ pub struct ReadbackRing<T> {
 struct Slot<T> {
     buffer: wgpu::Buffer,
     state: Arc<AtomicU32>,
-    /// The sequence number and the description of the copy.
+    /// Sequence number of the copy, and its description.
     about: Option<(u64, T)>,
 }
 
 impl<T> ReadbackRing<T> {
-    /// A ring of `slots` buffers of at least `bytes` bytes.
+    /// Creates a ring of `slots` buffers of at least `bytes` bytes each.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] that the device reports.
     pub fn new(gpu: &Gpu, label: &'static str, slots: usize, bytes: u64) -> Result<Self, GpuError> {
         let bytes = bytes.next_multiple_of(8).max(8);
         let slots = (0..slots).map(|_| Slot::new(gpu, label, bytes)).collect::<Result<_, _>>()?;
         Ok(Self { label, bytes, slots, recorded: 0 })
     }
 
-    /// Records a copy into a free buffer, with its description. Returns whether a buffer was free. If not, nothing is
-    /// recorded and `copy` is not called.
+    /// Records a copy into a free buffer, and stores the description `about` with it. Returns whether a buffer was free. If
+    /// none was, nothing is recorded and `copy` is not called.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -62,7 +62,7 @@ impl<T> ReadbackRing<T> {
         true
     }
 
-    /// Takes the latest copy that arrived since the last call, if any. Earlier copies are discarded.
+    /// Returns the latest copy that arrived since the last call, if any. Earlier copies are discarded.
     pub fn take(&mut self) -> Option<(T, Vec<u8>)> {
         let mut last: Option<(u64, T, Vec<u8>)> = None;
         for slot in &mut self.slots {
@@ -86,11 +86,11 @@ impl<T> ReadbackRing<T> {
         last.map(|(_, about, bytes)| (about, bytes))
     }
 
-    /// Discards all copies that have not arrived, because their encoders were or will be dropped. Buffers that they may
-    /// still use are replaced.
+    /// Discards all copies that have not arrived, for example because their encoders were dropped. The buffers of these copies
+    /// are replaced.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] that the device reports.
     pub fn invalidate(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
         for slot in self.slots.iter_mut().filter(|slot| slot.is(COMING)) {
             *slot = Slot::new(gpu, self.label, self.bytes)?;
@@ -137,7 +137,7 @@ mod tests {
         let (about, bytes) = ring.take().expect("arrived");
         assert_eq!((about, bytemuck::pod_collect_to_vec::<u8, u32>(&bytes)), (2, vec![7, 9]));
         assert!(ring.take().is_none());
-        // A dropped encoder never frees its buffer.
+        // A dropped encoder leaves its buffer occupied until `invalidate`.
         assert!(record(&mut ring, 3, false) && record(&mut ring, 4, false) && !record(&mut ring, 5, true));
         gpu.wait().expect("done");
         assert!(ring.take().is_none());

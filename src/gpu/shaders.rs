@@ -1,43 +1,43 @@
-//! The flat, validated WGSL of every pass with a description of its bindings, written by `build.rs`.
+//! The flat, validated WGSL of every pass, with a description of its bindings. `build.rs` writes both.
 
-/// A pipeline stage.
+/// A stage of a pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
-    /// `@vertex`
+    /// Vertex stage (`@vertex`).
     Vertex,
-    /// `@fragment`
+    /// Fragment stage (`@fragment`).
     Fragment,
-    /// `@compute`
+    /// Compute stage (`@compute`).
     Compute,
 }
 
-/// An entry point of a shader.
+/// An entry point of a shader: a function that a pipeline can run.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct EntryPoint {
-    /// The function's name.
+    /// Name of the function.
     pub name: &'static str,
-    /// Its stage.
+    /// Pipeline stage of the entry point.
     pub stage: Stage,
-    /// Invocations per workgroup; zeros outside compute.
+    /// Threads per workgroup along x, y and z; zeros outside the compute stage.
     pub workgroup_size: [u32; 3],
-    /// Its vertex attributes; empty outside vertex stages.
+    /// Vertex attributes of the entry point; empty outside the vertex stage.
     pub inputs: &'static [Input],
 }
 
-/// A vertex attribute.
+/// A vertex attribute of an entry point.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Input {
-    /// Its `@location`.
+    /// Number in the attribute's `@location`.
     pub location: u32,
-    /// The argument's name.
+    /// Name of the argument or struct member.
     pub name: &'static str,
-    /// WGSL's name of its type: `vec3<f32>`.
+    /// WGSL name of the attribute's type, such as `vec3<f32>`.
     #[serde(rename = "type")]
     pub ty: &'static str,
 }
 
-/// The kind of resource at a binding.
+/// Kind of the resource at a binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BindingKind {
@@ -47,98 +47,98 @@ pub enum BindingKind {
     StorageRead,
     /// A storage buffer that the shader writes.
     StorageReadWrite,
-    /// A filterable float texture, 2-D array.
+    /// A filterable float texture: a 2-D array.
     TextureArray,
-    /// A filterable float texture, 2-D.
+    /// A filterable 2-D float texture.
     Texture,
-    /// A float texture, 2-D, whose texels the shader only loads: any float format.
+    /// A 2-D float texture of any float format. The shader loads its texels and does not filter them.
     LoadedTexture,
-    /// A depth texture, 2-D.
+    /// A 2-D depth texture.
     DepthTexture,
-    /// A filtering sampler.
+    /// A sampler that filters.
     Sampler,
     /// A sampler that compares depths.
     ComparisonSampler,
 }
 
-/// A resource that a shader uses.
+/// A resource that a shader binds.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Binding {
-    /// Bind group.
+    /// Index of the bind group.
     pub group: u32,
-    /// Index in the group.
+    /// Index of the binding in its group.
     pub binding: u32,
-    /// The variable's name.
+    /// Name of the WGSL variable.
     pub name: &'static str,
-    /// The kind of resource.
+    /// Kind of the bound resource.
     pub kind: BindingKind,
-    /// WGSL's name of its type: `array<vec4<f32>>`. Structs are among [`Shader::structs`].
+    /// WGSL name of the variable's type, such as `array<vec4<f32>>`. [`Shader::structs`] describes struct types.
     #[serde(rename = "type")]
     pub ty: &'static str,
-    /// The stages that use it.
+    /// The stages in which the shader uses the resource.
     pub stages: &'static [Stage],
 }
 
-/// A struct of a shader, as naga lays it out.
+/// A struct type of a shader, with the layout that naga computes.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Struct {
-    /// Its name.
+    /// WGSL name of the struct.
     pub name: &'static str,
-    /// Size in bytes.
+    /// Size of the struct in bytes.
     pub size: u32,
-    /// Members in the order of their offsets.
+    /// Members of the struct, in the order of their offsets.
     pub members: &'static [Member],
 }
 
-/// A member of a struct.
+/// A member of a struct type.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Member {
-    /// Its name.
+    /// WGSL name of the member.
     pub name: &'static str,
-    /// Offset from the struct's start, in bytes.
+    /// Offset of the member from the start of the struct, in bytes.
     pub offset: u32,
-    /// WGSL's name of its type.
+    /// WGSL name of the member's type.
     #[serde(rename = "type")]
     pub ty: &'static str,
 }
 
-/// A pipeline-overridable constant.
+/// A pipeline-overridable constant of a shader.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Override {
-    /// Its name.
+    /// WGSL name of the constant.
     pub name: &'static str,
-    /// WGSL's name of its type: `bool`, `i32`, `u32` or `f32`.
+    /// WGSL name of the constant's type: `bool`, `i32`, `u32` or `f32`.
     #[serde(rename = "type")]
     pub ty: &'static str,
-    /// The default value as WebGPU's `constants` take it: 0 or 1 for `bool`.
+    /// Default value, as WebGPU's `constants` take it: 0 or 1 for `bool`.
     pub default: f64,
 }
 
-/// A flat WGSL shader.
+/// A flat WGSL shader, with a description of its interface.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Shader {
-    /// The path of its root file without `kernels/` or `wgsl/` and extension.
+    /// Path of the shader's root file, without the folder `kernels/` or `wgsl/` and without the extension.
     pub name: &'static str,
-    /// The WGSL text.
+    /// The complete WGSL text.
     #[serde(skip)]
     pub source: &'static str,
-    /// The entry points.
+    /// The entry points of the shader.
     pub entry_points: &'static [EntryPoint],
-    /// The resources that it binds.
+    /// The resources that the shader binds.
     pub bindings: &'static [Binding],
-    /// Its pipeline-overridable constants.
+    /// The pipeline-overridable constants of the shader.
     pub overrides: &'static [Override],
-    /// The structs that its bindings and functions use.
+    /// The structs that bindings and functions of the shader use.
     pub structs: &'static [Struct],
 }
 
-/// WGSL to put before your own shader, for programs that do not compose theirs with WESL. It has functions, structs and
+/// WGSL to put before your own shader, for programs that do not compose their shaders with WESL. It has functions, structs and
 /// constants, but no entry points, bindings or override constants. No two modules declare the same name.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Module {
-    /// The folder below `wgsl/`: `animation`, `skinning`, `surface` or `terrain`.
+    /// Name of the folder below `wgsl/`: `animation`, `skinning`, `surface` or `terrain`.
     pub name: &'static str,
-    /// The WGSL text, with a comment on every declaration.
+    /// The complete WGSL text, with a comment on every declaration.
     #[serde(skip)]
     pub source: &'static str,
 }

@@ -1,4 +1,4 @@
-//! A cache of the pipelines compiled on a device, which all passes share.
+//! A cache of the pipelines that were compiled on a device. All passes share it.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use super::GpuError;
 use super::shaders::Shader;
 
-/// Compiled pipelines by the key from which they were compiled.
+/// Compiled pipelines, by the key from which each was compiled.
 #[derive(Debug)]
 pub(crate) struct Shared<K, T>(Mutex<HashMap<K, T>>);
 
@@ -18,27 +18,27 @@ impl<K, T> Default for Shared<K, T> {
 }
 
 impl<K: Eq + Hash, T: Clone> Shared<K, T> {
-    /// The pipeline that was compiled for `key` before, else the result of `compile`.
+    /// Returns the pipeline that was compiled for `key` before; if there is none, compiles it.
     ///
     /// # Errors
-    /// Errors of `compile`, which is tried again at the next call.
+    /// The errors of `compile`. The next call then tries again.
     pub(crate) fn get(&self, key: K, compile: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         let all = || self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(known) = all().get(&key) {
             return Ok(known.clone());
         }
-        // The map is unlocked during compilation: drivers take seconds, and two threads may compile different objects.
+        // The map is unlocked during compilation, which can take seconds. Two threads may then compile at the same time.
         let compiled = compile()?;
         Ok(all().entry(key).or_insert(compiled).clone())
     }
 }
 
-/// A shader with override constants.
+/// Key of a pipeline: a shader and its override constants.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Program {
-    /// Its unique name.
+    /// Unique name of the shader.
     shader: &'static str,
-    /// Name and bits of each value.
+    /// Name of each override constant, and the bits of its value.
     constants: Vec<(&'static str, u64)>,
 }
 

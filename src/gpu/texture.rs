@@ -1,9 +1,9 @@
-//! Textures that are filled once ([`Gpu::fill_level`]) and sampled, with their samplers.
+//! Creates textures that are filled once ([`Gpu::fill_level`]) and then sampled, and their samplers.
 
 use super::{Gpu, GpuError};
 
 impl Gpu {
-    /// Refuses a texture that is wider or higher than the device allows. `remedy` is advice for the caller.
+    /// Refuses a texture that is wider or higher than the device allows. `remedy` is the advice in the error.
     ///
     /// # Errors
     /// [`GpuError::Limit`].
@@ -21,7 +21,7 @@ impl Gpu {
         Err(GpuError::Limit { pass: label, limit: "maxTextureDimension2D", needed, available, remedy })
     }
 
-    /// A texture with layers and mip levels. The caller holds an error scope.
+    /// Creates a texture with layers and mip levels. The caller must hold an error scope.
     pub(crate) fn sampled_texture(
         &self,
         label: &'static str,
@@ -41,7 +41,8 @@ impl Gpu {
         })
     }
 
-    /// A trilinear sampler that wraps or clamps. The caller holds an error scope.
+    /// Creates a trilinear sampler that repeats the texture (`wraps`) or clamps to its edges. The caller must hold an error
+    /// scope.
     pub(crate) fn trilinear_sampler(&self, label: &'static str, wraps: bool) -> wgpu::Sampler {
         let address = if wraps { wgpu::AddressMode::Repeat } else { wgpu::AddressMode::ClampToEdge };
         self.device.create_sampler(&wgpu::SamplerDescriptor {

@@ -1,4 +1,4 @@
-//! Writes from the host: immediate, or staged so that an encoder orders them with the work that it records.
+//! Writes from the host to device buffers: immediate, or staged, so that an encoder orders them with its other work.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -9,18 +9,19 @@ use encase::internal::WriteInto;
 use super::buffer::uniform_bytes;
 use super::{Buffer, Gpu, GpuError, Uniform};
 
-/// A destination for buffer writes. [`Gpu`] writes before the next submission; [`Staged`] writes where it is recorded.
+/// A destination for buffer writes. With [`Gpu`], writes take effect before the next submission. With [`Staged`], they take
+/// effect where an encoder records them.
 pub trait Upload {
-    /// Writes bytes into a buffer, from `offset` on. Offset and length are multiples of 4.
+    /// Writes bytes into a buffer, from byte `offset` on. Offset and length must be multiples of 4.
     ///
     /// # Errors
-    /// [`GpuError`], also if the bytes reach beyond the buffer's end.
+    /// [`GpuError`] that the device reports; also if the bytes reach beyond the buffer's end.
     fn bytes(&mut self, to: &wgpu::Buffer, offset: u64, bytes: &[u8]) -> Result<(), GpuError>;
 
-    /// Writes the value of a uniform.
+    /// Writes the value of a uniform buffer.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] that the device reports.
     fn uniform<T: ShaderSize + WriteInto>(&mut self, to: &Uniform<T>, value: &T) -> Result<(), GpuError>
     where
         Self: Sized,
@@ -28,10 +29,10 @@ pub trait Upload {
         self.bytes(to.raw(), 0, &uniform_bytes(value)?)
     }
 
-    /// Writes elements of a buffer, from `first` on.
+    /// Writes elements of a buffer, starting at the element `first`.
     ///
     /// # Errors
-    /// [`GpuError`], also if they reach beyond the buffer's end.
+    /// [`GpuError`] that the device reports; also if the elements reach beyond the buffer's end.
     fn elements<T: bytemuck::Pod>(&mut self, to: &Buffer<T>, first: usize, data: &[T]) -> Result<(), GpuError>
     where
         Self: Sized,
@@ -47,14 +48,14 @@ impl Upload for &Gpu {
     }
 }
 
-/// Writes that were staged and not recorded yet.
+/// Writes that are staged but not yet recorded in an encoder.
 #[derive(Debug, Default)]
 pub struct Staged {
     bytes: Vec<u8>,
     copies: Vec<Copy>,
 }
 
-/// A range of the staged bytes, and its destination.
+/// One staged write: a range of the staged bytes, and its destination.
 #[derive(Debug)]
 struct Copy {
     to: wgpu::Buffer,
@@ -81,16 +82,16 @@ impl Staged {
         self.bytes.len()
     }
 
-    /// Whether nothing is staged.
+    /// Whether no write is staged.
     pub fn is_empty(&self) -> bool {
         self.copies.is_empty()
     }
 }
 
-/// The smallest staging buffer, in bytes.
+/// Smallest size of a staging buffer, in bytes.
 const LEAST: u64 = 1 << 12;
 
-/// A ring of staging buffers, one for each recording in flight.
+/// A ring of staging buffers. Each recording uses one until the device has executed it.
 #[derive(Debug)]
 pub struct StagingRing {
     slots: Vec<Slot>,
@@ -103,12 +104,12 @@ struct Slot {
     state: Arc<AtomicU8>,
 }
 
-/// States of a slot. DROPPED: an encoder or command buffer with a recording was dropped before submission.
+/// States of a staging buffer. DROPPED: an encoder or command buffer with a recording was dropped before submission.
 const FREE: u8 = 0;
 const BUSY: u8 = 1;
 const DROPPED: u8 = 2;
 
-/// A recording. Its encoder owns it until the device has executed it.
+/// Marks a staging buffer as in use. The encoder owns this value until the device has executed the recording.
 struct Recording(Arc<AtomicU8>);
 
 impl Recording {
@@ -124,19 +125,20 @@ impl Drop for Recording {
 }
 
 impl StagingRing {
-    /// A ring of `slots` buffers, each allocated on first use.
+    /// Creates a ring of `slots` buffers. Each is allocated on first use.
     pub fn new(slots: usize) -> Self {
         let slot = || Slot { buffer: None, state: Arc::default() };
         Self { slots: (0..slots).map(|_| slot()).collect(), next: 0 }
     }
 
-    /// Records the staged writes and clears them. Returns whether a buffer was free.
+    /// Records the staged writes in `encoder`, and clears them. Returns whether a staging buffer was free; if none was, nothing
+    /// is recorded.
     ///
-    /// The buffer is free again once the device has executed the work of `encoder`. A buffer that is too small is
-    /// replaced by one of twice the size.
+    /// The staging buffer is free again once the device has executed the work of `encoder`. A buffer that is too small is
+    /// replaced by a larger buffer, with a power of two as its size.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] that the device reports.
     pub fn record(
         &mut self,
         gpu: &Gpu,
@@ -158,24 +160,25 @@ impl StagingRing {
         Ok(true)
     }
 
-    /// Begins writes that are recorded one by one. `room` is their expected size in bytes. `None` if no buffer is free.
+    /// Starts a sequence of writes that are recorded one by one. `room` is their expected size in bytes. `None` if no buffer is
+    /// free.
     pub(crate) fn stream<'a>(&'a mut self, gpu: &'a Gpu, room: usize) -> Option<StagingStream<'a>> {
         let slot = self.free()?;
         Some(StagingStream { gpu, slot, room, bytes: Vec::new(), is_used: false })
     }
 
-    /// Number of buffers that are not free.
+    /// Number of staging buffers that are not free.
     pub fn busy(&self) -> usize {
         self.slots.iter().filter(|slot| !slot.is(FREE)).count()
     }
 
-    /// Whether a recording was dropped before it was submitted, so that its writes are lost.
+    /// Whether a recording was dropped before it was submitted. Its writes are lost.
     pub fn has_dropped(&self) -> bool {
         self.slots.iter().any(|slot| slot.is(DROPPED))
     }
 
-    /// Discards all recordings that have not been executed, because their encoders were or will be dropped. Buffers
-    /// that they may still use are not reused.
+    /// Discards all recordings that have not been executed, for example because their encoders were dropped. Buffers that such
+    /// recordings may still use are not reused.
     pub fn invalidate(&mut self) {
         let slots = self.slots.len();
         *self = Self::new(slots);
@@ -194,7 +197,7 @@ impl Slot {
         self.state.load(Ordering::Acquire) == state
     }
 
-    /// Replaces a buffer that is too small by one of twice the size.
+    /// Replaces a buffer that is smaller than `needed` bytes by a larger buffer, with a power of two as its size.
     fn make_room(&mut self, gpu: &Gpu, needed: u64) -> Result<(), GpuError> {
         if self.buffer.as_ref().is_none_or(|buffer| buffer.size() < needed) {
             let size = needed.next_power_of_two().max(LEAST);
@@ -212,24 +215,23 @@ impl Slot {
     }
 }
 
-/// Writes that are recorded one by one, among an encoder's other work. Their bytes are uploaded in one piece at the
-/// end.
+/// Writes that are recorded one by one, among other work of an encoder. All their bytes are uploaded together at the end.
 #[derive(Debug)]
 pub(crate) struct StagingStream<'a> {
     gpu: &'a Gpu,
     slot: &'a mut Slot,
-    /// Expected number of bytes.
+    /// Expected size of all writes, in bytes.
     room: usize,
-    /// The contents of the slot's buffer at submission.
+    /// Bytes to upload into the staging buffer before submission.
     bytes: Vec<u8>,
     is_used: bool,
 }
 
 impl StagingStream<'_> {
-    /// Records a write of bytes into a buffer, from `offset` on. Offset and length are multiples of 4.
+    /// Records a write of bytes into a buffer, from byte `offset` on. Offset and length must be multiples of 4.
     ///
     /// # Errors
-    /// [`GpuError`], also if the bytes reach beyond the buffer's end.
+    /// [`GpuError`] that the device reports; also if the bytes reach beyond the buffer's end.
     pub fn write(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -241,7 +243,7 @@ impl StagingStream<'_> {
         let needed = self.bytes.len() + bytes.len();
         let has_room = |buffer: &wgpu::Buffer| needed as u64 <= buffer.size();
         if !self.slot.buffer.as_ref().is_some_and(has_room) {
-            // Recorded copies keep reading the old buffer.
+            // Copies that are already recorded keep reading the old buffer.
             self.send()?;
             self.slot.make_room(self.gpu, needed.max(self.room) as u64)?;
             self.bytes.clear();
@@ -253,10 +255,10 @@ impl StagingStream<'_> {
         Ok(())
     }
 
-    /// Ends the writes. The buffer is free again once the device has executed the work of `encoder`.
+    /// Ends the sequence of writes. The staging buffer is free again once the device has executed the work of `encoder`.
     ///
     /// # Errors
-    /// [`GpuError`].
+    /// [`GpuError`] that the device reports.
     pub fn finish(self, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
         self.send()?;
         if self.is_used {
@@ -298,7 +300,7 @@ mod tests {
         staged
     }
 
-    /// Two recordings in one submission each see their own value. Queue writes would both come before the submission.
+    /// Two recordings in one submission each see their own value. Writes by the queue would both come before the submission.
     #[test]
     fn staged_writes_happen_where_they_are_recorded() {
         let gpu = gpu();
@@ -316,7 +318,7 @@ mod tests {
         assert_eq!(ring.busy(), 0);
     }
 
-    /// Writes that are recorded one by one are visible to later work of the encoder, even beyond their expected size.
+    /// Writes that are recorded one by one are visible to later work of the encoder, even if they exceed their expected size.
     #[test]
     fn streams_write_where_they_are_recorded() {
         let gpu = gpu();
@@ -359,7 +361,7 @@ mod tests {
         gpu.wait().expect("done");
         assert_eq!(ring.busy(), 0);
         assert!(!ring.has_dropped());
-        // A dropped encoder or command buffer never frees its buffer.
+        // A dropped encoder or command buffer leaves its staging buffer occupied.
         for is_finished in [false, true] {
             let mut encoder = gpu.encoder("dropped");
             assert!(record(&mut ring, &mut encoder) && !ring.has_dropped());

@@ -1,18 +1,18 @@
-//! Submissions, and two ways to wait for them: blocking, or as a future.
+//! Submits work to the device, and waits for it: blocking, or as a future.
 
 use futures_channel::oneshot::channel;
 
 use super::{Gpu, GpuError};
 
-/// The longest wait for the device before it counts as hung.
+/// Longest wait for the device before the device counts as hung.
 #[cfg(not(target_arch = "wasm32"))]
 const PATIENCE: std::time::Duration = std::time::Duration::from_secs(300);
 
 impl Gpu {
-    /// Records with `record` and submits.
+    /// Records commands with `record`, and submits them.
     ///
     /// # Errors
-    /// The errors of [`GpuError`] that the device reports.
+    /// [`GpuError`] that the device reports.
     pub fn submit(
         &self,
         label: &str,
@@ -25,20 +25,20 @@ impl Gpu {
         })
     }
 
-    /// Records with `record`, submits, and waits until the device has finished.
+    /// Records commands with `record`, submits them, and waits until the device has finished.
     ///
     /// # Errors
-    /// The errors of [`GpuError`] that the device reports.
+    /// [`GpuError`] that the device reports.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn run(&self, label: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<(), GpuError> {
         self.submit(label, record)?;
         self.wait()
     }
 
-    /// As `Gpu::run`, but also returns the error of the recording.
+    /// Records, submits and waits like `Gpu::run`, with a `record` that may fail.
     ///
     /// # Errors
-    /// [`Error::Gpu`](crate::Error::Gpu) with errors of the device, and the error of `record`.
+    /// [`Error::Gpu`](crate::Error::Gpu) with errors that the device reports, and the error of `record`.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn try_run(
         &self,
@@ -50,10 +50,10 @@ impl Gpu {
         recorded
     }
 
-    /// Records with `record`, submits, and completes once the device has finished; see [`Gpu::wait_async`].
+    /// Records commands with `record`, submits them, and completes once the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// The errors of [`GpuError`] that the device reports.
+    /// [`GpuError`] that the device reports.
     pub async fn run_async(
         &self,
         label: &str,
@@ -63,7 +63,7 @@ impl Gpu {
         self.wait_async().await
     }
 
-    /// Waits until everything submitted so far has run.
+    /// Waits until the device has executed everything submitted so far.
     ///
     /// # Errors
     /// The loss of the device, an error that was reported in the meantime, or [`GpuError::Hung`].
@@ -75,17 +75,17 @@ impl Gpu {
         polled.map(|_| ()).map_err(|_| GpuError::Hung { seconds: PATIENCE.as_secs() })
     }
 
-    /// Completes once everything submitted so far has run, and the errors of all calls so far are known.
+    /// Completes once the device has executed everything submitted so far, and the errors of all calls so far are known.
     ///
-    /// It never blocks. A browser's event loop drives it. Elsewhere the program must poll the device, or the future never
-    /// wakes: call `gpu.device().poll(wgpu::PollType::Poll)` once per frame, or `Gpu::wait` on a thread of its own.
+    /// The future never blocks. In a browser, the event loop drives it. Elsewhere, the program must poll the device, or the
+    /// future never wakes. Call `gpu.device().poll(wgpu::PollType::Poll)` once per frame, or `Gpu::wait` on a separate thread.
     ///
     /// # Errors
     /// The loss of the device, or an error that was reported in the meantime.
     pub async fn wait_async(&self) -> Result<(), GpuError> {
         let (sender, receiver) = channel();
         self.queue.on_submitted_work_done(move || {
-            // The receiver no longer exists if the caller gave up waiting.
+            // The receiver no longer exists if the caller has dropped the future.
             let _ = sender.send(());
         });
         let answer = receiver.await;
@@ -93,10 +93,10 @@ impl Gpu {
         answer.map_err(|error| GpuError::DeviceLost { reason: error.to_string() })
     }
 
-    /// Blocks until `work` is done. `work` may await only the device.
+    /// Blocks until `work` is done. `work` may wait only for the device.
     ///
     /// # Errors
-    /// Those of `work`, and of [`Gpu::wait`].
+    /// The errors of `work`, and of [`Gpu::wait`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn block_on<T, E: From<GpuError>>(&self, work: impl Future<Output = Result<T, E>>) -> Result<T, E> {
         let mut work = std::pin::pin!(work);
@@ -105,7 +105,7 @@ impl Gpu {
             if let std::task::Poll::Ready(done) = work.as_mut().poll(&mut context) {
                 return done;
             }
-            // A finished device has run its callbacks, so the work can go on.
+            // After this wait, the callbacks of the device have run, so the work can go on.
             self.wait()?;
         }
     }
@@ -120,7 +120,7 @@ mod tests {
         Gpu::headless(&Options::default()).expect("the suite needs an adapter")
     }
 
-    /// Several waits in sequence, as when generating terrain.
+    /// Several waits in sequence, as when terrain is generated.
     #[test]
     fn blocking_drives_work_that_waits_repeatedly() {
         let gpu = gpu();

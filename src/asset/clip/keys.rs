@@ -7,14 +7,14 @@ use crate::shared::animation::interpolation;
 /// Largest key time, in seconds: about 12 days.
 pub const LONGEST: f32 = 1_048_576.0;
 
-/// Threshold in seconds below which key times count as 0.
+/// Threshold in seconds, 2⁻¹⁰⁰: key times below it are stored as 0.
 const LEAST_TIME: f32 = 7.888_609e-31;
 
 /// Interpolation of values between keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[repr(u32)]
 pub enum Interpolation {
-    /// The value of the previous key.
+    /// Constant: the value of the previous key holds until the next key.
     Step = interpolation::INTERPOLATION_STEP,
     /// Linear interpolation; for rotations, along the shortest arc.
     Linear = interpolation::INTERPOLATION_LINEAR,
@@ -23,7 +23,7 @@ pub enum Interpolation {
 }
 
 impl Interpolation {
-    /// Number of values per key.
+    /// Number of stored values per key: 3 in cubic splines, otherwise 1.
     pub(crate) fn values_a_key(self) -> usize {
         if self == Self::CubicSpline { 3 } else { 1 }
     }
@@ -32,9 +32,9 @@ impl Interpolation {
 /// Keys of one track, as an importer provides them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keys {
-    /// Key times in seconds, in non-descending order.
+    /// Key times in seconds. They do not descend.
     pub times: Vec<f32>,
-    /// One value per key; in cubic splines three (in-tangent, value, out-tangent). The fourth component of translations and
+    /// One value per key, or three in cubic splines (in-tangent, value, out-tangent). The fourth component of translations and
     /// scales is 0.
     pub values: Vec<[f32; 4]>,
     /// Interpolation of values between keys.
@@ -42,13 +42,12 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Checks times and values of translations, scales or, if `is_rotation`, quaternions. `times` and `values`
-    /// are the paths of these fields in errors.
+    /// Checks key times and values. `is_rotation` says that the values are quaternions, otherwise they are translations or
+    /// scales. `times` and `values` are the paths of these fields in errors.
     ///
     /// # Errors
-    /// [`InputError`] for no keys; for times that descend, are negative, too large or not finite; for a number
-    /// of values that is not one per key (three in splines); for values that are not finite; and for rotations
-    /// without a direction.
+    /// [`InputError`] for no keys; for times that descend, are negative, too large or not finite; for a number of values that
+    /// is not one per key (three in splines); for values that are not finite; and for rotations without a direction.
     pub(crate) fn validate(&self, [times, values]: [&str; 2], is_rotation: bool) -> Result<(), InputError> {
         check_times(times, &self.times)?;
         let each = self.interpolation.values_a_key();
@@ -66,10 +65,11 @@ impl Keys {
         Ok(())
     }
 
-    /// Converts valid keys to the form in which a clip stores them.
+    /// Converts valid keys to the form in which a clip stores them: unit quaternions, and tangents multiplied by the duration
+    /// of their segment.
     ///
     /// # Errors
-    /// [`InputError`] for tangents that exceed `f32` when they are multiplied by their seconds.
+    /// [`InputError`] for tangents that overflow `f32` when they are multiplied by that duration in seconds.
     pub(crate) fn stored(&self, path: &str, is_rotation: bool) -> Result<Self, InputError> {
         let mut keys = self.clone();
         keys.times.iter_mut().filter(|time| **time < LEAST_TIME).for_each(|time| *time = 0.0);
@@ -92,7 +92,7 @@ impl Keys {
     }
 }
 
-/// Refuses an empty list of times, and times that descend or are out of range.
+/// Refuses an empty list of key times, times that descend, and times outside 0..=[`LONGEST`] seconds.
 pub(crate) fn check_times(path: &str, times: &[f32]) -> Result<(), InputError> {
     if times.is_empty() {
         return Err(InputError::new(format!("{path}.len"), 0, "must be at least 1"));
@@ -109,7 +109,7 @@ pub(crate) fn check_times(path: &str, times: &[f32]) -> Result<(), InputError> {
     }
 }
 
-/// Gives each quaternion the sign that is closer to the previous one.
+/// Negates quaternions where needed, so that each is closer to the previous quaternion than its negative.
 fn take_short_ways(values: &mut [[f32; 4]]) {
     for at in 1..values.len() {
         let (before, here) = (values[at - 1], values[at]);
@@ -120,7 +120,8 @@ fn take_short_ways(values: &mut [[f32; 4]]) {
     }
 }
 
-/// Multiplies each tangent by the seconds between its key and the adjacent key on its side, as the spline's formula requires.
+/// Multiplies each tangent by the seconds between its key and the next key on the tangent's side, as the spline formula
+/// requires.
 fn stretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
     for (key, pair) in times.windows(2).enumerate() {
         for at in [3 * key + 2, 3 * key + 3] {

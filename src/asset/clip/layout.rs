@@ -1,4 +1,4 @@
-//! Places tracks in the flat arrays of a clip, one after another.
+//! Places tracks one after another in the flat arrays of a clip.
 
 use super::{Clip, Interpolation, Keys, Track};
 use crate::InputError;
@@ -9,13 +9,14 @@ pub(super) struct Layout {
     tracks: Vec<Track>,
     times: Vec<f32>,
     values: Vec<[f32; 4]>,
-    // Start of each list of times that an earlier track already has.
+    // Index in `times` of every list of key times stored so far. The map's key is the bits of these times.
     known: std::collections::HashMap<Vec<u32>, usize>,
     last: f32,
 }
 
 impl Layout {
-    /// Appends a track: its keys, or one value at rest. Tracks with the same times share them.
+    /// Appends a track with its keys, or with the single value `rest` if there are no keys. Tracks with equal key times share
+    /// one list.
     pub(super) fn add(&mut self, keys: Option<Keys>, rest: [f32; 4]) {
         let at_rest = Keys { times: vec![], values: vec![rest], interpolation: Interpolation::Step };
         let keys = keys.unwrap_or(at_rest);
@@ -34,12 +35,12 @@ impl Layout {
         self.values.extend(keys.values);
     }
 
-    /// Finishes the clip. It lasts `duration` seconds or until the last key.
+    /// Finishes the clip. It lasts `duration` seconds, or until the last key if that is later.
     ///
     /// # Errors
-    /// [`InputError`] for more values than a buffer has room for.
+    /// [`InputError`] for more values than one buffer can hold.
     pub(super) fn finish(self, name: String, duration: f32) -> Result<Clip, InputError> {
-        // Shaders compute byte offsets of values in u32.
+        // Shaders compute byte offsets of values in u32, so a clip has fewer than 2^28 values of 16 bytes.
         if self.values.len() > (1 << 28) - 1 {
             return Err(InputError::new("clip.values.len", self.values.len(), "must be below 2^28"));
         }

@@ -1,11 +1,11 @@
-//! Copies of clips with replaced keys in some tracks.
+//! Copies of clips in which the keys of some tracks are replaced.
 
 use super::{Clip, Keys, Layout, Track, TransformPart};
 use crate::InputError;
 
 impl Clip {
-    /// Keys of a track as stored, with tangents multiplied by the seconds of their segment. A track at rest has no keys and one
-    /// value.
+    /// Keys of a track in stored form: tangents are multiplied by the duration of their segment in seconds. A track at rest has
+    /// no key times and one value.
     pub(crate) fn stored_keys(&self, track: &Track) -> Keys {
         let interpolation = track.interpolation;
         let count = interpolation.values_a_key() * track.keys.max(1) as usize;
@@ -13,8 +13,8 @@ impl Clip {
         Keys { times: self.times_of(track).to_vec(), values: values.to_vec(), interpolation }
     }
 
-    /// Copies the clip with replaced translation and rotation keys of one bone; `None` keeps the old ones. Tangents must be
-    /// multiplied by the seconds of their segment.
+    /// Copies the clip and replaces the translation and rotation keys of one bone. `None` keeps the old keys. Tangents must be
+    /// in stored form: multiplied by the duration of their segment in seconds.
     ///
     /// # Errors
     /// [`InputError`] for rotations without a direction.
@@ -34,10 +34,11 @@ impl Clip {
         Self::of_stored(&self.name, self.duration, tracks)
     }
 
-    /// Builds a clip from stored tracks, three per bone. A track without times is at rest; its one value is the rest pose.
+    /// Builds a clip from tracks in stored form, three per bone. A track without times is at rest; its one value is the rest
+    /// pose.
     ///
     /// # Errors
-    /// [`InputError`] for more values than a buffer has room for.
+    /// [`InputError`] for more values than one buffer can hold.
     pub(crate) fn of_stored(
         name: &str,
         duration: f32,

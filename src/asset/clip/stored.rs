@@ -1,4 +1,4 @@
-//! Validation of clips read with serde.
+//! Validation of clips that serde has read.
 
 use serde::Deserialize;
 
@@ -6,7 +6,7 @@ use super::{Clip, LONGEST, Track, TransformPart, check_times};
 use crate::InputError;
 use crate::asset::transform::{finite, unit};
 
-/// A clip as read, before validation.
+/// A clip as serde reads it, before validation.
 #[derive(Deserialize)]
 #[serde(rename = "Clip")]
 pub(super) struct StoredClip {
@@ -20,14 +20,14 @@ pub(super) struct StoredClip {
 impl TryFrom<StoredClip> for Clip {
     type Error = InputError;
 
-    /// Refuses tracks that are not three per bone or reach beyond the arrays, times that descend or are out of range, values
-    /// that are not finite, and rotations without a direction.
+    /// Refuses a number of tracks that is not a multiple of three, and tracks that reach beyond the arrays. Also refuses times
+    /// that descend or are out of range, values that are not finite, and rotations without a direction.
     fn try_from(stored: StoredClip) -> Result<Self, InputError> {
         let StoredClip { name, duration, tracks, times, values } = stored;
         if !tracks.len().is_multiple_of(TransformPart::ALL.len()) {
             return Err(InputError::new("clip.tracks.len", tracks.len(), "must be three a bone"));
         }
-        // Shaders compute byte offsets of values in u32.
+        // Shaders compute byte offsets of values in u32, so a clip has fewer than 2^28 values of 16 bytes.
         if values.len() > (1 << 28) - 1 {
             return Err(InputError::new("clip.values.len", values.len(), "must be below 2^28"));
         }
@@ -46,7 +46,7 @@ impl TryFrom<StoredClip> for Clip {
     }
 }
 
-/// Checks one track. Returns the time of its last key; 0 at rest.
+/// Checks one track. Returns the time of its last key in seconds; 0 for a track at rest.
 fn check_track(at: usize, track: &Track, times: &[f32], values: &[[f32; 4]]) -> Result<f32, InputError> {
     let of_track = |first: u32, count: usize, all: usize, field: &str| {
         let (first, end) = (first as usize, first as usize + count);

@@ -1,5 +1,5 @@
-//! Accessors: arrays of numbers in buffers (glTF 2.0, section 3.6.2), which may be sparse, interleaved or
-//! normalized. Values are read as floats, or as integers for joints and indices.
+//! Reads accessors: arrays of numbers in buffers (glTF 2.0, section 3.6.2). They may be sparse, interleaved or normalized.
+//! Values are read as floats, or as integers for joints and indices.
 
 use gltf_json::accessor::{Accessor, ComponentType, Type, sparse::Sparse};
 use gltf_json::{Index, buffer};
@@ -17,25 +17,25 @@ struct Shape {
     is_normalized: bool,
 }
 
-/// The component types that a use of an accessor permits.
+/// The component types that are permitted where an accessor is used.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// Floats, and normalized integers, which stand for fractions.
+    /// Floats, and normalized integers, which encode fractions.
     Fraction,
-    /// Floats, normalized integers, and 8- or 16-bit integers taken as values (`KHR_mesh_quantization`).
+    /// Floats, normalized integers, and 8- or 16-bit integers that stand for themselves (`KHR_mesh_quantization`).
     Quantized,
-    /// Unsigned integers.
+    /// Unsigned integers, for joints and indices.
     Whole,
 }
 
-/// Converts a component's number to a value.
+/// Converts the number that a component encodes to a value.
 type Decode<T> = fn(Shape, f64) -> T;
 
-/// Elements of an accessor, in a buffer view or in a compressed primitive.
+/// Elements of an accessor. They lie in a buffer view, or in a compressed primitive.
 pub struct Elements<'d, 'a> {
     pub document: &'d Document<'a>,
     pub accessor: Index<Accessor>,
-    /// The compressed primitive, and the name of the attribute in it that the accessor describes.
+    /// The compressed primitive with these elements, and the name of the attribute there. `None` if they lie in a buffer view.
     pub compressed: Option<(&'d Decompressed<'d>, String)>,
 }
 
@@ -43,20 +43,21 @@ impl Elements<'_, '_> {
     /// Reads the elements as vectors of `N` floats. Normalized integers become fractions.
     ///
     /// # Errors
-    /// [`InputError`] with the path of the fault in the file; integers that are not normalized are a fault too.
+    /// [`InputError`] with the path of the fault in the file. Integers that are not normalized are a fault, too.
     pub fn vectors<const N: usize>(self) -> Result<Vec<[f32; N]>, InputError> {
         self.read(Kind::Fraction, float)
     }
 
-    /// Reads the elements as floats, as [`Elements::vectors`].
+    /// Reads the elements as single floats. Normalized integers become fractions.
     ///
     /// # Errors
-    /// As [`Elements::vectors`].
+    /// The errors of [`Elements::vectors`].
     pub fn floats(self) -> Result<Vec<f32>, InputError> {
         Ok(self.vectors::<1>()?.into_flattened())
     }
 
-    /// Reads a vertex attribute: as [`Elements::vectors`], but 8- or 16-bit integers are permitted and keep their values.
+    /// Reads the elements of a vertex attribute as vectors of `N` floats. Normalized integers become fractions; other 8- or
+    /// 16-bit integers keep their values.
     ///
     /// # Errors
     /// [`InputError`] with the path of the fault in the file.
@@ -67,7 +68,7 @@ impl Elements<'_, '_> {
     /// Reads the elements as vectors of `N` unsigned integers.
     ///
     /// # Errors
-    /// [`InputError`] with the path of the fault in the file; floats and normalized integers are a fault too.
+    /// [`InputError`] with the path of the fault in the file. Floats and normalized integers are a fault, too.
     pub fn integers<const N: usize>(self) -> Result<Vec<[u32; N]>, InputError> {
         self.read(Kind::Whole, |_, number| number as u32)
     }
@@ -91,12 +92,13 @@ impl Elements<'_, '_> {
 }
 
 impl<'a> Document<'a> {
-    /// Elements of an accessor in its buffer view.
+    /// Returns a reader for the elements of an accessor in its buffer view.
     pub fn elements(&self, accessor: Index<Accessor>) -> Elements<'_, 'a> {
         Elements { document: self, accessor, compressed: None }
     }
 
-    /// Components of the accessor at `path`, from its buffer view or zeros, with the replacements of a sparse accessor applied.
+    /// Reads all components of the accessor at `path`, from its buffer view or as zeros. Replacements of a sparse accessor are
+    /// applied.
     fn values<T: Copy + Default>(
         &self,
         path: &str,
@@ -118,7 +120,7 @@ impl<'a> Document<'a> {
         Ok(values)
     }
 
-    /// Charges the elements to the budget before they are read.
+    /// Charges the accessor's elements to the budget before they are read.
     fn count(&self, path: &str, accessor: &Accessor, shape: Shape) -> Result<(), InputError> {
         match accessor.buffer_view {
             // Reading the view adds its buffer's bytes to the budget.
@@ -129,7 +131,7 @@ impl<'a> Document<'a> {
         self.budget.spend(path, shape.count.saturating_mul(shape.components.div_ceil(4)))
     }
 
-    /// Replaces the elements listed by a sparse accessor.
+    /// Overwrites the elements that a sparse accessor replaces.
     fn replace<T: Copy>(
         &self,
         path: &str,
@@ -159,7 +161,8 @@ impl<'a> Document<'a> {
         Ok(())
     }
 
-    /// Components of elements that begin at an offset in a buffer view. `path` is the path of the object with the offset.
+    /// Reads the components of elements that begin at an offset in a buffer view. `path` names the object that states the
+    /// offset.
     fn decoded<T>(
         &self,
         path: &str,
@@ -228,7 +231,7 @@ fn shape(path: &str, accessor: &Accessor, components: usize, kind: Kind) -> Resu
     Ok(Shape { component, components, count, is_normalized: accessor.normalized })
 }
 
-/// Number encoded in the bytes of a component.
+/// Returns the number that the bytes of a component encode.
 fn number(component: ComponentType, bytes: &[u8]) -> f64 {
     match (component, bytes) {
         (ComponentType::I8, [a]) => (*a as i8).into(),
@@ -237,7 +240,7 @@ fn number(component: ComponentType, bytes: &[u8]) -> f64 {
         (ComponentType::U16, [a, b]) => u16::from_le_bytes([*a, *b]).into(),
         (ComponentType::U32, [a, b, c, d]) => u32::from_le_bytes([*a, *b, *c, *d]).into(),
         (ComponentType::F32, [a, b, c, d]) => f32::from_le_bytes([*a, *b, *c, *d]).into(),
-        // Unreachable: the slice has the size of the component type.
+        // Unreachable: the slice is as long as the component type.
         _ => f64::NAN,
     }
 }

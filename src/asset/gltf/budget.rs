@@ -1,40 +1,41 @@
-//! Allocation budget of a document, in proportion to its size. Without it, small files could allocate much: accessors without a
-//! buffer view are zeros that take no bytes, and nodes, animations and textures may refer to the same bytes many times. An
-//! import charges everything that it allocates here first, unless the data lies in the document.
+//! Allocation budget of a document, in proportion to its size. Without a budget, small files could cause large allocations:
+//! accessors without a buffer view are zeros that take no bytes, and nodes, animations and textures may refer to the same bytes
+//! many times. Before an import allocates data that does not lie in the document, it charges that data here.
 
 use std::cell::Cell;
 
 use crate::InputError;
 
-/// Number of elements that any document may have. An element is a vector or number of an accessor, counted each time it is
-/// read, or data derived from it.
+/// Number of elements that every document may have, however small. An element is a vector or number of an accessor, counted
+/// each time it is read, or data derived from it.
 const ELEMENTS: u64 = 1 << 16;
 
-/// Elements allowed per byte for documents that refer to the same bytes repeatedly, up to [`MAX_REPEATED`] in total.
+/// Elements allowed per byte of a document that refers to the same bytes repeatedly, up to [`MAX_REPEATED`] in total.
 const REPEATED: u64 = 128;
 
-/// Largest number of elements of a document that refers to the same bytes repeatedly: about 300 MiB.
+/// Largest number of elements of a document that refers to the same bytes repeatedly. They take about 300 MiB.
 const MAX_REPEATED: u64 = 1 << 24;
 
-/// Elements allowed per byte in any case: more than a document has if it refers to its bytes once.
+/// Elements allowed per byte of any document. A document that refers to its bytes only once has fewer.
 const ELEMENTS_A_BYTE: u64 = 4;
 
-/// As [`ELEMENTS_A_BYTE`], for documents with compressed meshes: Draco needs one byte for a triangle and half a vertex.
+/// Elements allowed per byte of a document with compressed meshes: Draco needs one byte for a triangle and half a vertex.
 const ELEMENTS_A_PACKED_BYTE: u64 = 16;
 
 /// Number of decompressed bytes that count as one element: four floats.
 pub const BYTES_AN_ELEMENT: usize = 16;
 
-/// Number of texels that the images of any document may have: 64 MiB, one image of 4096².
+/// Number of texels that the images of any document may have, however small: one image of 4096 × 4096, or 64 MiB.
 const TEXELS: u64 = 1 << 24;
 
-/// Texels allowed per byte, for all images together.
+/// Texels allowed per byte of the document, for all its images together.
 const TEXELS_A_BYTE: u64 = 256;
 
-/// Largest number of texels in a byte of PNG or JPEG: deflate expands a byte to at most 1032 bytes, with 8 texels each.
+/// Largest number of texels that a byte of PNG or JPEG can encode. Deflate expands a byte to at most 1032 bytes, with 8 texels
+/// each.
 const TEXELS_A_PACKED_BYTE: u64 = 8 * 1032;
 
-/// Bytes found so far, and the allocations charged against them.
+/// Number of bytes read so far, and the allocations charged against them.
 pub struct Budget {
     elements_a_byte: u64,
     bytes: Cell<u64>,
@@ -50,20 +51,20 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// Budget of a document with compressed meshes.
+    /// Creates the budget of a document with compressed meshes.
     pub fn of_compressed() -> Self {
         Self { elements_a_byte: ELEMENTS_A_PACKED_BYTE, ..Self::default() }
     }
 
-    /// Adds the bytes of a buffer that was read.
+    /// Adds to the budget the bytes of a buffer that was read.
     pub fn add_bytes(&self, bytes: usize) {
         self.bytes.set(self.bytes.get().saturating_add(bytes as u64));
     }
 
-    /// Charges elements before they are allocated. `path` names the count in errors.
+    /// Charges `count` elements before they are allocated. `path` names the count in errors.
     ///
     /// # Errors
-    /// [`InputError`] if there are too many.
+    /// [`InputError`] if the document then has more elements than it may have.
     pub fn spend(&self, path: &str, count: usize) -> Result<(), InputError> {
         let most = self.most();
         let all = self.elements.get().saturating_add(count as u64);
@@ -87,7 +88,7 @@ impl Budget {
         bytes.saturating_mul(self.elements_a_byte).max(repeated)
     }
 
-    /// Refuses more zeros than the document has bytes, beyond a fixed allowance.
+    /// Refuses an accessor of more zeros than the document has bytes. [`ELEMENTS`] zeros are always allowed.
     ///
     /// # Errors
     /// [`InputError`] with the largest count allowed.
@@ -100,7 +101,7 @@ impl Budget {
         Ok(())
     }
 
-    /// Charges the texels of an image before it is decoded; `packed` is its size in bytes.
+    /// Charges the texels of an image before it is decoded. `packed` is the encoded size in bytes.
     ///
     /// # Errors
     /// [`InputError`] if the image has more texels than its bytes can hold, or if all images together have too many.

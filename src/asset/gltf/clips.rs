@@ -1,4 +1,4 @@
-//! Reads animations: animations of bones become clips, and animations of morph weights become keys of a mesh.
+//! Reads animations. Animations of bones become clips; animations of morph weights become weight keys of a mesh.
 
 use gltf_json::accessor::Accessor;
 use gltf_json::animation::{Interpolation as GltfInterpolation, Property};
@@ -22,7 +22,7 @@ fn clip(
     index: usize,
     animation: &Animation,
 ) -> Result<Clip, InputError> {
-    // Each bone has three tracks with at least one value, with or without keys.
+    // A bone has three tracks with at least one value each, even without keys.
     document.budget.spend(&format!("animations[{index}]"), 6 * nodes.skeleton.len())?;
     let mut bones = vec![BoneKeys::default(); nodes.skeleton.len()];
     let mut duration = 0.0_f32;
@@ -57,7 +57,7 @@ fn clip(
     Clip::new(name, &nodes.skeleton, &bones, duration)
 }
 
-/// Keys of a node's morph weights, by clip.
+/// Reads the keys of a node's morph weights: for each clip that has them, the clip's index and the keys.
 pub fn weight_keys(
     document: &Document<'_>,
     node: usize,
@@ -84,15 +84,15 @@ pub fn weight_keys(
     Ok(all)
 }
 
-/// The error of a channel whose target an earlier channel animates.
+/// Error for a channel whose target an earlier channel of the animation already animates.
 fn twice(animation: usize, channel: usize, node: usize) -> InputError {
     let path = format!("animations[{animation}].channels[{channel}].target");
     InputError::new(path, node, "must not be animated by two channels")
 }
 
-/// Keys of a sampler, before its values are read.
+/// A sampler of an animation whose times are read, but not its values yet.
 struct Sampler {
-    /// Paths of the times and the values in the file.
+    /// Paths in the file of the sampler's times and of its values.
     paths: [String; 2],
     times: Vec<f32>,
     values: Index<Accessor>,

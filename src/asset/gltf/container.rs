@@ -1,9 +1,9 @@
-//! Splits a GLB into its JSON and its binary chunk (glTF 2.0, chapter 4). The crate `gltf` also has a reader, but it panics on
-//! a header with a length below 12.
+//! Splits a GLB into its JSON and its binary chunk (glTF 2.0, chapter 4). The crate `gltf` also has a reader for GLB, but that
+//! reader panics on a header with a length below 12.
 
 use crate::InputError;
 
-/// The JSON of a document and, for a GLB, its binary chunk.
+/// The JSON of a document, and its binary chunk if it is a GLB.
 pub struct Container<'a> {
     pub json: &'a [u8],
     pub binary: Option<&'a [u8]>,
@@ -13,7 +13,7 @@ const JSON: u32 = 0x4e4f_534a;
 const BINARY: u32 = 0x004e_4942;
 
 impl<'a> Container<'a> {
-    /// Splits a GLB. Bytes that do not begin with its magic number are taken as JSON.
+    /// Splits a GLB into JSON and binary chunk. Bytes that do not begin with the magic number of GLB are taken as JSON.
     pub fn new(bytes: &'a [u8]) -> Result<Self, InputError> {
         if !bytes.starts_with(b"glTF") {
             return Ok(Self { json: bytes, binary: None });

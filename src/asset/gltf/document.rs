@@ -19,23 +19,23 @@ use super::{faults, json};
 use crate::InputError;
 use crate::asset::beside::path_below;
 
-/// A document in which all indices are in range.
+/// A glTF document in which all indices are in range.
 pub struct Document<'a> {
     pub root: Root,
-    /// Data of extensions that gltf-json does not read.
+    /// Data of the extensions that gltf-json does not read.
     pub extensions: Extensions,
     /// Allocation budget of the document.
     pub budget: Budget,
     binary: Option<&'a [u8]>,
     beside: Option<Beside<'a>>,
     buffers: Vec<OnceCell<Bytes<'a>>>,
-    /// Decompressed bytes of compressed buffer views, each decompressed once.
+    /// Decompressed bytes of each compressed buffer view, filled when the view is first read.
     decompressed: Vec<OnceCell<Vec<u8>>>,
-    /// External files, each read once.
+    /// Contents of external files, each read once, by path.
     files: RefCell<HashMap<PathBuf, Rc<Vec<u8>>>>,
 }
 
-/// Bytes of a buffer: part of the document, or read from elsewhere.
+/// Bytes of a buffer: a part of the document, or read from another file.
 enum Bytes<'a> {
     Here(&'a [u8]),
     Elsewhere(Rc<Vec<u8>>),
@@ -57,7 +57,7 @@ impl<'a> Document<'a> {
         let value = json::parse(json)?;
         faults::check_version(&value)?;
         let extensions = Extensions::new(&value, is_bare)?;
-        // The tree is consumed below, and parsed again only to quote a value in an error.
+        // The tree is consumed below. It is parsed again only to quote a value in an error.
         let again = || json::parse(json).unwrap_or_default();
         let root: Root =
             serde_path_to_error::deserialize(value).map_err(|error| faults::of_type(&again(), &error))?;
@@ -79,7 +79,7 @@ impl<'a> Document<'a> {
         })
     }
 
-    /// Bytes of a buffer view, decompressed, and its stride.
+    /// Returns the bytes of a buffer view, decompressed if needed, and the view's stride in bytes, if it has one.
     pub fn view(&self, index: Index<buffer::View>) -> Result<(&[u8], Option<usize>), InputError> {
         let at = index.value();
         let path = format!("bufferViews[{at}]");
@@ -100,7 +100,7 @@ impl<'a> Document<'a> {
         Ok((bytes, stride))
     }
 
-    /// Slice of a buffer; `path` names its length in errors.
+    /// Returns a range of a buffer's bytes. `path` names the length in errors.
     pub fn slice(
         &self,
         path: &str,
@@ -145,11 +145,11 @@ impl<'a> Document<'a> {
             let bound = format!("must be at most {there}, the bytes there are");
             return Err(InputError::new(format!("{path}.byteLength"), length, bound));
         }
-        // The binary chunk of a GLB may have padding.
+        // The binary chunk of a GLB may end with padding, which is cut off.
         Ok(&cell.get_or_init(|| bytes).get()[..length as usize])
     }
 
-    /// Bytes of a `data:` URI, or of a file in the document's folder or below it.
+    /// Returns the bytes of a `data:` URI, or of a file in the document's folder or below it.
     pub fn resource(&self, path: &str, uri: &str) -> Result<Rc<Vec<u8>>, InputError> {
         let shown: String = uri.chars().take(60).collect();
         let refused = |bound: String| InputError::new(path, &shown, bound);
@@ -177,14 +177,14 @@ impl<'a> Document<'a> {
     }
 }
 
-/// Some exporters omit the padding.
+/// Base64 decoder. Padding is optional, because some exporters omit it.
 const BASE64: base64::engine::GeneralPurpose = base64::engine::GeneralPurpose::new(
     &base64::alphabet::STANDARD,
     base64::engine::GeneralPurposeConfig::new()
         .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent),
 );
 
-/// Checks that the accessors of positions exist. gltf-json's validation assumes it and panics otherwise.
+/// Checks that the accessors of positions exist. gltf-json's validation would panic if one did not.
 fn positions_exist(root: &Root) -> Result<(), InputError> {
     let meshes = root.meshes.iter().enumerate();
     for (mesh, at, primitive) in
@@ -204,9 +204,9 @@ fn positions_exist(root: &Root) -> Result<(), InputError> {
 const OF_POSITIONS: [&str; 3] =
     [".attributes[\"POSITION\"]", ".attributes[\"POSITION\"].min", ".attributes[\"POSITION\"].max"];
 
-/// Returns the first error that gltf-json finds. Some of its errors are not errors here: accessors without a buffer view, which
-/// glTF defines as zeros; primitives without positions, which are left out; positions without bounds, which are not read; and
-/// extensions, which are checked before.
+/// Returns the first error that gltf-json finds. The import accepts four things that gltf-json refuses: accessors without a
+/// buffer view, which glTF defines as zeros; primitives without positions, which are left out; positions without bounds, which
+/// are not read; and extensions, which were checked before.
 fn validate(root: &Root, document: impl FnOnce() -> Value) -> Result<(), InputError> {
     let mut first = None;
     root.validate(root, gltf_json::Path::new, &mut |path, fault| {
@@ -220,7 +220,7 @@ fn validate(root: &Root, document: impl FnOnce() -> Value) -> Result<(), InputEr
             first = Some((path, fault));
         }
     });
-    // gltf-json does not validate these.
+    // gltf-json does not validate the targets of channels.
     for (animation, all) in root.animations.iter().enumerate() {
         for (at, channel) in all.channels.iter().enumerate() {
             let path = |field| format!("animations[{animation}].channels[{at}].target.{field}");

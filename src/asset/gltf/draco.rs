@@ -12,20 +12,20 @@ use super::extensions::DRACO;
 use crate::InputError;
 use crate::asset::mesh::MAX_VERTICES;
 
-/// Location of a primitive's compressed bytes, and the attributes in them.
+/// Location of a primitive's Draco-compressed bytes, and the attributes that they contain.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Draco {
     buffer_view: u32,
-    /// Id of each attribute within the compressed bytes.
+    /// For each attribute, by name, its id within the compressed bytes.
     attributes: HashMap<String, u32>,
 }
 
-/// A decompressed primitive.
+/// A primitive that was decompressed with Draco.
 pub struct Decompressed<'a> {
     mesh: Mesh,
     attributes: &'a HashMap<String, u32>,
-    /// The primitive's extension in the file.
+    /// Path of the Draco extension in the file, for errors.
     path: String,
 }
 
@@ -33,11 +33,11 @@ impl Draco {
     /// Decompresses the primitive at `path`.
     ///
     /// # Errors
-    /// [`InputError`] for damaged bytes, and for more vertices or triangles than meshes may have or the budget allows.
+    /// [`InputError`] for damaged bytes, and for more vertices or triangles than a mesh or the budget permits.
     pub fn decompressed(&self, document: &Document<'_>, path: &str) -> Result<Decompressed<'_>, InputError> {
         let path = format!("{path}.extensions.{DRACO}");
         let (bytes, _) = document.view(Index::<buffer::View>::new(self.buffer_view))?;
-        // A triangle counts as three elements, its indices.
+        // A triangle counts as three elements, one for each index.
         let elements = document.budget.left();
         let limits = DecodeLimits::default()
             .with_max_points(MAX_VERTICES as u64)
@@ -61,10 +61,10 @@ impl Decompressed<'_> {
         self.mesh.faces().iter().flat_map(|face| face.map(|point| point.0)).collect()
     }
 
-    /// Values of an attribute, vertex by vertex; `None` if it is not compressed.
+    /// Returns the values of an attribute, in the order of the vertices. `None` if the extension does not list the attribute.
     ///
     /// # Errors
-    /// [`InputError`] if the attribute does not exist, or has another number of components.
+    /// [`InputError`] if the compressed mesh lacks the attribute, or has another number of components for it.
     pub fn attribute(&self, name: &str, components: usize) -> Result<Option<Vec<f32>>, InputError> {
         let Some(number) = self.attributes.get(name) else { return Ok(None) };
         let refused = |value: String, bound: &str| {

@@ -1,4 +1,4 @@
-//! Extensions: the ones that a document may have, and the data of those that gltf-json does not read.
+//! Extensions: the list of those that a document may require, and the data that gltf-json does not read.
 
 use gltf_json::extensions::texture::TextureTransform;
 use serde::Deserialize;
@@ -9,8 +9,8 @@ use super::faults;
 use super::meshopt::Meshopt;
 use crate::InputError;
 
-/// Extensions that a document may require. Lights are left out of the import, but Blender requires their extension wherever
-/// there are any.
+/// Extensions that a document may require. Lights are not imported, but their extension is accepted, because Blender requires
+/// it in every file with lights.
 const READ: [&str; 7] = [
     DRACO,
     "EXT_meshopt_compression",
@@ -21,23 +21,23 @@ const READ: [&str; 7] = [
     "KHR_lights_punctual",
 ];
 
-/// Prefix of material extensions, which a document may require as well: except for colours and normal maps, materials are left
-/// out anyway.
+/// Prefix of material extensions. A document may require any of them, because the import leaves out everything in materials
+/// except colours and normal maps.
 const OF_MATERIALS: &str = "KHR_materials_";
 
 /// Extension for Draco compression of primitives.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
 
-/// Extension for meshoptimizer compression of buffer views, under both of its names. If a view has both, the first counts.
+/// Both names of the extension for meshoptimizer compression of buffer views. If a view has both, the first name counts.
 const MESHOPT: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
 
-/// Extension for many copies of a node's mesh.
+/// Extension that draws many copies of a node's mesh.
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Extension for textures with WebP images.
 const WEBP: &str = "EXT_texture_webp";
 
-/// Extensions with images in formats that are not read, each with a remedy for the error message. A document may require them
+/// Extensions for image formats that are not supported, each with a remedy for the error message. A document may require them
 /// if materials and images are not read.
 const OF_IMAGES: [(&str, &str); 3] = [
     ("KHR_texture_basisu", DECOMPRESS),
@@ -45,7 +45,7 @@ const OF_IMAGES: [(&str, &str); 3] = [
     ("MSFT_texture_dds", "convert its textures to PNG"),
 ];
 
-/// Remedy for KTX2 images.
+/// Remedy that the error for a KTX2 image suggests.
 pub const DECOMPRESS: &str = "decompress its textures, as `gltf-transform ktxdecompress IN OUT` does";
 
 /// Data of extensions that gltf-json does not read.
@@ -56,11 +56,11 @@ pub struct Extensions {
     pub meshopt: Vec<Option<Meshopt>>,
     /// For each mesh and each of its primitives, its Draco compression.
     pub draco: Vec<Vec<Option<Draco>>>,
-    /// For each texture, the image of `EXT_texture_webp`.
+    /// For each texture, the index of its `EXT_texture_webp` image.
     pub webp: Vec<Option<usize>>,
-    /// For each texture, an extension with an image that is not read, and the remedy.
+    /// For each texture, the name of an extension whose image cannot be read, and the remedy.
     pub unread_images: Vec<Option<(&'static str, &'static str)>>,
-    /// For each node, whether it has many copies of its mesh.
+    /// For each node, whether `EXT_mesh_gpu_instancing` makes many copies of its mesh.
     instanced: Vec<bool>,
 }
 
@@ -68,7 +68,7 @@ impl Extensions {
     /// Reads the extensions of a document. `is_bare` means that materials and images are not needed.
     ///
     /// # Errors
-    /// [`InputError`] for extensions that are required and not read.
+    /// [`InputError`] for extensions that the document requires and this crate does not support.
     pub fn new(document: &Value, is_bare: bool) -> Result<Self, InputError> {
         check_required(document, is_bare)?;
         Ok(Self {
@@ -98,12 +98,12 @@ impl Extensions {
         })
     }
 
-    /// Whether meshes are compressed.
+    /// Whether any mesh or buffer view of the document is compressed.
     pub fn is_compressed(&self) -> bool {
         self.draco.iter().flatten().any(Option::is_some) || self.meshopt.iter().any(Option::is_some)
     }
 
-    /// Refuses an instanced node that would be read, because only one of its copies would be.
+    /// Refuses an instanced node if the import would read it, because only one of its copies would be read.
     pub fn check_copies(&self, is_read: &[bool]) -> Result<(), InputError> {
         match self.instanced.iter().zip(is_read).position(|(is_instanced, is_read)| *is_instanced && *is_read)
         {
@@ -121,12 +121,12 @@ struct Webp {
     source: usize,
 }
 
-/// The elements of a list of an object; none if it has no such list.
+/// Iterates over the list `name` of an object; empty if the object has no such list.
 fn list<'a>(value: &'a Value, name: &str) -> impl Iterator<Item = &'a Value> {
     value.get(name).and_then(Value::as_array).into_iter().flatten()
 }
 
-/// Applies `read` to each element of a list and its path.
+/// Applies `read` to each element of the list `name`, together with the element's path.
 fn each<'a, T>(
     value: &'a Value,
     name: &str,
@@ -135,7 +135,7 @@ fn each<'a, T>(
     list(value, name).enumerate().map(|(at, element)| read(element, &format!("{name}[{at}]"))).collect()
 }
 
-/// Reads an extension of the object at `path`.
+/// Reads the extension `name` of the object at `path`; `None` if the object does not have it.
 fn extension<'a, T: Deserialize<'a>>(
     object: &'a Value,
     name: &str,
@@ -150,7 +150,7 @@ fn extension<'a, T: Deserialize<'a>>(
     })
 }
 
-/// Refuses a required extension that is not read and that would change the result.
+/// Refuses a document that requires an extension that is not supported.
 fn check_required(document: &Value, is_bare: bool) -> Result<(), InputError> {
     let of_images = |name: &str| OF_IMAGES.iter().find(|(known, _)| *known == name);
     let is_read = |name: &str| {
@@ -172,7 +172,7 @@ fn check_required(document: &Value, is_bare: bool) -> Result<(), InputError> {
     }
 }
 
-/// The extension of a texture whose image is not read, if there is one.
+/// Returns the texture's extension with an image format that cannot be read, and the remedy.
 fn unread_image(texture: &Value) -> Option<(&'static str, &'static str)> {
     let given = texture.get("extensions")?;
     OF_IMAGES.into_iter().find(|(name, _)| given.get(name).is_some())

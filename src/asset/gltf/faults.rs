@@ -1,4 +1,4 @@
-//! Errors for documents that gltf-json refuses: the path, the value there, and what glTF allows in its place.
+//! Errors for documents that gltf-json refuses. Each has the path, the value there, and what glTF allows in its place.
 
 use std::fmt::Debug;
 
@@ -9,10 +9,10 @@ use serde_json::Value;
 use crate::InputError;
 use crate::error::json::{refused_value, shown};
 
-/// Major version of glTF that is read; any minor version is accepted.
+/// Major version of glTF that is supported; any minor version is accepted.
 const MAJOR: &str = "2";
 
-/// Refuses documents that are not glTF, and versions other than 2.
+/// Refuses documents that are not glTF, and glTF versions other than 2.
 pub fn check_version(document: &Value) -> Result<(), InputError> {
     let version = || document.pointer("/asset/version");
     for (path, value) in [("glTF", Some(document)), ("asset", document.get("asset"))] {
@@ -76,7 +76,7 @@ fn value_at<'a>(document: &'a Value, steps: &[&str]) -> Option<&'a Value> {
     })
 }
 
-/// Bound for an index beyond the end of its list.
+/// Text for an index beyond the end of its list; it names the list and its length.
 fn out_of_list(document: &Value, steps: &[&str], field: &str) -> String {
     let is_attribute = steps.iter().rev().nth(1) == Some(&"attributes");
     let list = match field {
@@ -99,7 +99,7 @@ fn out_of_list(document: &Value, steps: &[&str], field: &str) -> String {
     format!("must lie in the list {list}, below {count}")
 }
 
-/// Error for an attribute whose name glTF does not define; gltf-json does not report the name.
+/// Error for an attribute whose name glTF does not define. It names the attribute, which gltf-json does not report.
 fn of_attribute(document: &Value, of_mesh: &[&str], path: &str) -> InputError {
     let is_known = |name: &str| {
         let set =
@@ -114,7 +114,7 @@ fn of_attribute(document: &Value, of_mesh: &[&str], path: &str) -> InputError {
     InputError::new(parent, unknown.map_or("invalid", String::as_str), bound)
 }
 
-/// Values that glTF allows in a field.
+/// Text that lists the values that glTF allows in a field.
 fn known(steps: &[&str], field: &str) -> String {
     let of =
         |values: &dyn Debug| format!("must be one of {}", format!("{values:?}").trim_matches(['[', ']']));

@@ -1,17 +1,17 @@
-//! Parses a document's JSON, and rewrites constructs that glTF permits and gltf-json rejects.
+//! Parses a document's JSON, and rewrites constructs that glTF permits but gltf-json rejects.
 
 use serde_json::{Number, Value};
 
 use crate::InputError;
 use crate::error::json::{message, place};
 
-/// Largest number up to which a double represents every integer: 2⁵³.
+/// 2⁵³: up to this number, a double represents every integer exactly.
 const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// Parses the JSON of a document.
 ///
 /// # Errors
-/// [`InputError`] with line and column or, if the text is not a JSON object, with its first characters.
+/// [`InputError`] with line and column. For a text that is not a JSON object, it has the first characters instead.
 pub fn parse(json: &[u8]) -> Result<Value, InputError> {
     // glTF lets readers ignore a byte order mark.
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
@@ -36,19 +36,19 @@ pub fn parse(json: &[u8]) -> Result<Value, InputError> {
             attributes.retain(|name, _| !is_foreign(name));
         }
     }
-    // A scene may lack its list of nodes.
+    // In glTF, a scene may lack its list of nodes; gltf-json requires the list.
     for scene in list(&mut value, "scenes").filter_map(Value::as_object_mut) {
         scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
     }
     Ok(value)
 }
 
-/// The elements of a list of an object; none if it has no such list.
+/// Iterates over the list `name` of an object; empty if the object has no such list.
 fn list<'a>(value: &'a mut Value, name: &str) -> impl Iterator<Item = &'a mut Value> {
     value.get_mut(name).and_then(Value::as_array_mut).into_iter().flatten()
 }
 
-/// Removes all `extras`, which may be any value and are not read, and writes integral numbers as integers: `1.0` is one too.
+/// Removes all `extras`, which may be any value and are not read. Writes integral numbers such as `1.0` as integers.
 fn rewrite(value: &mut Value) {
     match value {
         Value::Object(members) => {
@@ -65,8 +65,8 @@ fn rewrite(value: &mut Value) {
     }
 }
 
-/// Integer value of a number that is written with a fraction or an exponent. `None` for `-0.0`, because integers have no
-/// negative zero.
+/// Converts a number that is written with a fraction or an exponent to an integer, if its value is an integer. `None` for
+/// `-0.0`, because integers have no negative zero.
 fn whole(number: &Number) -> Option<Number> {
     let value = number.as_f64().filter(|_| number.is_f64())?;
     let is_whole =
@@ -95,8 +95,8 @@ fn resolve_pointer(channel: &mut Value) {
     }
 }
 
-/// Whether a channel has a target node. Extensions may animate other things than nodes; readers that do not know them skip such
-/// channels.
+/// Whether a channel has a target node. Extensions may animate other things than nodes; a reader that does not know the
+/// extension skips such a channel.
 fn has_node(channel: &Value) -> bool {
     let target = channel.get("target").and_then(Value::as_object);
     target.is_none_or(|target| target.contains_key("node"))

@@ -16,24 +16,24 @@ use super::extensions::DECOMPRESS;
 use crate::InputError;
 use crate::asset::material::{Alpha, Filter, MAX_TEXELS, Material, Sampling, Texture, Wrapping};
 
-/// Materials and images read so far, each once, in the order of first use.
+/// Materials and images that were read so far, each once, in the order of their first use.
 #[derive(Default)]
 pub struct Materials {
     pub materials: Vec<Material>,
     pub images: Vec<RgbaImage>,
-    /// Whether materials are left out.
+    /// Whether the import leaves out all materials.
     pub is_unread: bool,
     of_materials: HashMap<usize, usize>,
     of_images: HashMap<usize, usize>,
 }
 
 impl Materials {
-    /// Reader for an import without materials and images.
+    /// Creates a reader for an import without materials and images.
     pub fn unread() -> Self {
         Self { is_unread: true, ..Self::default() }
     }
 
-    /// Reads a material unless it was read before. Returns its index in the list.
+    /// Reads a material on its first use. Returns its index in `materials`.
     pub fn read(&mut self, document: &Document<'_>, index: Index<GltfMaterial>) -> Result<usize, InputError> {
         let at = index.value();
         if let Some(known) = self.of_materials.get(&at) {
@@ -53,8 +53,8 @@ impl Materials {
         Ok(self.materials.len() - 1)
     }
 
-    /// Normal map of a material, and its scale. The map is left out if its texture coordinates differ from those of the base
-    /// colour's texture.
+    /// Returns the normal map of a material, and the map's scale. The map is left out if its texture coordinates differ from
+    /// the base colour texture's coordinates.
     fn normal(
         &mut self,
         document: &Document<'_>,
@@ -122,12 +122,12 @@ impl Materials {
 struct Base<'a> {
     color: [f32; 4],
     texture: Option<&'a Info>,
-    /// The path of the colour within the material.
+    /// Name of the field with the colour, for paths in errors.
     name: &'static str,
 }
 
 impl<'a> Base<'a> {
-    /// Base colour of `KHR_materials_pbrSpecularGlossiness` if the material has that extension, otherwise of
+    /// Returns the base colour: from `KHR_materials_pbrSpecularGlossiness` if the material has that extension, otherwise from
     /// metallic-roughness.
     fn of(material: &'a GltfMaterial) -> Self {
         let glossy = material.extensions.as_ref().and_then(|all| all.pbr_specular_glossiness.as_ref());
@@ -146,14 +146,14 @@ impl<'a> Base<'a> {
     }
 }
 
-/// Magic number of KTX2.
+/// First bytes of a KTX2 image.
 const KTX2: &[u8] = b"\xabKTX 20\xbb";
 
-/// Image formats that are read.
+/// Image formats that can be decoded.
 const FORMATS: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
 
-/// Decodes a PNG, JPEG or WebP. The bytes decide the format, whatever `mimeType` says. Texels are charged to the budget; `path`
-/// names the image in errors.
+/// Decodes a PNG, JPEG or WebP image. The first bytes decide the format, whatever `mimeType` says. Texels are charged to the
+/// budget. `path` names the image in errors.
 pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
     let refused = |bound: String| InputError::new(path, format!("[{} bytes]", bytes.len()), bound);
     if bytes.starts_with(KTX2) {
@@ -170,7 +170,7 @@ pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, In
         let bound = format!("must be at most {MAX_TEXELS} texels wide and high");
         return Err(InputError::new(path, format!("{width} × {height}"), bound));
     }
-    // A few bytes of WebP can encode a large image of one colour.
+    // WebP has no limit of texels per byte: a few bytes can encode a large image of one colour.
     let packed = if format == ImageFormat::WebP { usize::MAX } else { bytes.len() };
     budget.spend_texels(path, [width, height], packed)?;
     Ok(reader().decode().map_err(unreadable)?.into_rgba8())
@@ -189,7 +189,7 @@ fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {
     }
 }
 
-/// Sampling of a texture. Settings that the sampler leaves open become linear, with mip levels.
+/// Converts a sampler. Filters that it does not state become linear, with mip levels.
 fn sampling(sampler: &Sampler) -> Sampling {
     let wrap = [sampler.wrap_s, sampler.wrap_t].map(|mode| match mode.unwrap() {
         WrappingMode::Repeat => Wrapping::Repeat,
@@ -212,35 +212,35 @@ fn sampling(sampler: &Sampler) -> Sampling {
     Sampling { wrap, magnified, minified, mips }
 }
 
-/// Texture coordinates at which a texture of a material is sampled, and their transform.
+/// The texture coordinates at which a material's texture is sampled: a set of the mesh, and a transform.
 pub struct Coordinates<'a> {
-    /// Index n of `TEXCOORD_n`.
+    /// Index n of the attribute `TEXCOORD_n`.
     pub set: u32,
-    /// The transform of `KHR_texture_transform`.
+    /// The transform that `KHR_texture_transform` states, if any.
     transform: Option<&'a TextureTransform>,
 }
 
 impl<'a> Coordinates<'a> {
-    /// Coordinates of the base colour's texture; `None` if there is none.
+    /// Coordinates of the base colour's texture; `None` if the material has no such texture.
     pub fn of_color(material: &'a GltfMaterial) -> Option<Self> {
         let info = Base::of(material).texture?;
         let transform = info.extensions.as_ref().and_then(|all| all.texture_transform.as_ref());
         Some(Self::new(info.tex_coord, transform))
     }
 
-    /// Coordinates of the normal map; `None` if there is none.
+    /// Coordinates of the normal map; `None` if the material has no normal map.
     pub fn of_normals(document: &'a Document<'_>, index: Index<GltfMaterial>) -> Option<Self> {
         let info = document.root.materials[index.value()].normal_texture.as_ref()?;
         let transform = document.extensions.normal_transforms.get(index.value()).and_then(Option::as_ref);
         Some(Self::new(info.tex_coord, transform))
     }
 
-    /// A transform may override the set.
+    /// Combines a set and a transform. The transform may override the set.
     fn new(set: u32, transform: Option<&'a TextureTransform>) -> Self {
         Self { set: transform.and_then(|transform| transform.tex_coord).unwrap_or(set), transform }
     }
 
-    /// Whether there is a transform.
+    /// Whether the coordinates are transformed.
     pub fn is_moved(&self) -> bool {
         self.transform.is_some()
     }
@@ -255,7 +255,7 @@ impl<'a> Coordinates<'a> {
         key(self) == key(other)
     }
 
-    /// Applies the transform: scale, rotation, translation, in this order.
+    /// Applies the transform to texture coordinates: scale, rotation, translation, in this order.
     pub fn apply(&self, uv: &mut [[f32; 2]]) {
         let Some(transform) = self.transform else { return };
         let ([x, y], [dx, dy]) = (transform.scale.0, transform.offset.0);

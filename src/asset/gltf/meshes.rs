@@ -1,5 +1,5 @@
-//! Reads the meshes of nodes: one mesh per primitive, with its morph weights and their keys. Primitives without positions are
-//! left out.
+//! Reads the meshes of nodes. Each primitive becomes one mesh, with morph weights and weight keys. Primitives without positions
+//! are left out.
 
 use gltf_json::mesh::Semantic;
 use gltf_json::validation::Checked;
@@ -14,13 +14,14 @@ use crate::InputError;
 use crate::asset::mesh::Mesh;
 use crate::asset::transform::finite;
 
-/// Elements charged per primitive, whatever it contains.
+/// Number of elements charged to the budget for every primitive, whatever it contains.
 const PRIMITIVE: usize = 32;
 
-/// Reads every primitive of the scene's nodes: first nodes with a skin, then nodes without one, each in the order of the nodes.
+/// Reads every primitive of the scene's nodes: first of nodes with a skin, then of nodes without a skin. Each group is in the
+/// order of the nodes.
 ///
 /// # Errors
-/// [`InputError`] with the path of the fault in the file, and if no primitive has positions.
+/// [`InputError`] with the path of the fault in the file; also if no primitive has positions.
 pub fn meshes(
     document: &Document<'_>,
     nodes: &Nodes,
@@ -75,7 +76,7 @@ pub fn meshes(
     }
 }
 
-/// Morph weights of a node: the node's own, or its mesh's, or 0.
+/// Morph weights of a node: the weights of the node, else of its mesh, else 0.
 fn weights(document: &Document<'_>, node: usize, mesh: usize) -> Result<Vec<f32>, InputError> {
     let (of_node, of_mesh) = (&document.root.nodes[node], &document.root.meshes[mesh]);
     let first = of_mesh.primitives.first().and_then(|primitive| primitive.targets.as_ref());

@@ -1,4 +1,4 @@
-//! Buffer views compressed by meshoptimizer (`EXT_meshopt_compression` and `KHR_meshopt_compression`), decompressed by the
+//! Decompresses buffer views that meshoptimizer compressed (`EXT_meshopt_compression` and `KHR_meshopt_compression`), with the
 //! crate meshoptimizer-rs.
 
 use meshoptimizer_rs::codec::{
@@ -12,20 +12,20 @@ use super::budget::BYTES_AN_ELEMENT;
 use super::document::Document;
 use crate::InputError;
 
-/// Location of a view's compressed bytes, and the format of the decompressed data.
+/// Compression of one buffer view: the location of its compressed bytes, and the format of the decompressed data.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Meshopt {
-    /// Name of the extension.
+    /// Name of the extension that the view uses.
     #[serde(skip)]
     extension: &'static str,
     buffer: u32,
     #[serde(default)]
     byte_offset: u64,
     byte_length: u64,
-    /// Bytes per element.
+    /// Bytes per decompressed element.
     byte_stride: usize,
-    /// Number of elements.
+    /// Number of decompressed elements.
     count: usize,
     mode: Mode,
     #[serde(default)]
@@ -52,15 +52,15 @@ enum Filter {
 }
 
 impl Meshopt {
-    /// Returns the same data with the extension's name set.
+    /// Returns the same compression with the extension's name set.
     pub fn named(self, extension: &'static str) -> Self {
         Self { extension, ..self }
     }
 
-    /// Decompressed bytes of view `index`.
+    /// Decompresses the buffer view with index `index`.
     ///
     /// # Errors
-    /// [`InputError`] for bytes that do not lie in the buffer, for damaged ones, and for more than the budget allows.
+    /// [`InputError`] for bytes that do not lie in the buffer, for damaged bytes, and for more data than the budget allows.
     pub fn decompressed(&self, document: &Document<'_>, index: usize) -> Result<Vec<u8>, InputError> {
         let path = format!("bufferViews[{index}].extensions.{}", self.extension);
         let buffer = gltf_json::Index::new(self.buffer);
@@ -68,7 +68,7 @@ impl Meshopt {
             document.slice(&format!("{path}.byteLength"), buffer, self.byte_offset, self.byte_length)?;
         let size = self.count.saturating_mul(self.byte_stride);
         document.budget.spend(&format!("{path}.count"), size.div_ceil(BYTES_AN_ELEMENT))?;
-        // meshoptimizer-rs refuses sizes and strides that contradict each other.
+        // meshoptimizer-rs checks that sizes and strides fit together.
         self.decode(bytes).map_err(|error| {
             let value = format!("[{} bytes]", bytes.len());
             let bound =

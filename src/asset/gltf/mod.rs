@@ -1,39 +1,41 @@
 //! Import of glTF 2.0, as JSON or GLB: the nodes of the default scene, skins, animations, and meshes.
 //!
-//! - **Scene.** Only the default scene is imported: the one that the document names, or else its first. If the document has no
-//!   scene, every node is imported.
+//! - **Scene.** Only one scene is imported: the default scene that the document names, or else its first scene. If the document
+//!   has no scene, every node is imported.
 //! - **Bones.** Bones are the joints of every skin that the scene's nodes use, each once, and all ancestors of those joints. A
 //!   joint's position in the scene is the product of all transforms from the root down, whether or not a skin uses the nodes,
-//!   and animations may move any of them. glTF requires such joints to lie in the same scene. Joints outside the scene become
-//!   bones nevertheless, posed below their own root, because vertices follow them. A skin that no node uses counts if all its
-//!   joints lie in the scene.
-//! - If there is no skin, bones are the nodes that carry meshes (see below), those that an animation moves, and all their
-//!   ancestors; all of these are [joints](crate::asset::Skeleton::joints).
+//!   and animations may move any of these nodes.
+//! - glTF requires that joints lie in the same scene as the node with the skin. Joints outside the scene become bones
+//!   nevertheless, because vertices follow them; they are posed below their own root. A skin that no node uses counts if all
+//!   its joints lie in the scene.
+//! - If there is no skin, bones are the nodes that carry meshes (see below), the nodes that an animation moves, and all their
+//!   ancestors. All of these are [joints](crate::asset::Skeleton::joints).
 //! - Matrices of nodes are decomposed into translation, rotation and scale.
 //! - Accessors may be sparse, interleaved, and of normalized integers. Buffers may lie in the GLB, in `data:` URIs, or in files
 //!   beside the document.
-//! - Channels that move no node, or a node that is not a bone, are left out, but they count for the clip's duration.
+//! - A channel that moves no node, or a node that is not a bone, is left out, but counts for the clip's duration.
 //! - **Meshes.** Each primitive becomes one [`Mesh`](crate::asset::Mesh), with vertices in the file's order. Meshes of nodes
 //!   with a skin come first, in the order of the nodes; meshes of nodes without a skin follow in the same order.
 //! - A mesh without a skin follows one bone, through a skin of its own. The bone is the lowest node, at or above the mesh's
-//!   node, that is a joint, an ancestor of joints, or animated. If there is none, it is the root of the tree, which never
+//!   node, that is a joint, an ancestor of joints, or animated. If there is none, the bone is the root of the tree, which never
 //!   moves. Such a node becomes a bone together with all its ancestors, but not a joint.
 //! - Strips and fans become lists of triangles; points and lines are left out. Primitives without positions are left out too;
-//!   if there are no others, the document is refused.
+//!   if no primitive has positions, the document is refused.
 //! - Missing normals become smooth normals. Missing tangents, and tangents given without normals, are computed by MikkTSpace.
-//!   It uses the texture coordinates of the normal texture if there is one, before any `KHR_texture_transform`. A vertex whose
-//!   corners have different tangents is repeated at the end of its primitive, one copy per tangent.
+//!   If there is a normal texture, MikkTSpace uses its texture coordinates, before any `KHR_texture_transform`. A vertex whose
+//!   corners have different tangents is duplicated at the end of its primitive, one copy per tangent.
 //! - A vertex whose weights are all 0 follows the joint in its first slot, as in three.js. A vertex with more than
 //!   [`MAX_INFLUENCES`](crate::asset::influences::MAX_INFLUENCES) joints follows the strongest of them.
-//! - The winding of triangles that are mirrored at rest is reversed: for a whole mesh, or triangle by triangle in a mesh where
-//!   some bones mirror and others do not; see [`Mesh::indices`](crate::asset::Mesh::indices). A clip whose scale has another
-//!   sign than at rest shows such triangles from inside.
+//! - Triangles that are mirrored at rest get the reverse winding, see [`Mesh::indices`](crate::asset::Mesh::indices). If only
+//!   some bones of a mesh mirror, this is decided triangle by triangle. A clip whose scale has another sign than at rest shows
+//!   such triangles from inside.
 //! - **Materials.** The import reads base colour with its texture, the normal map with its scale, samplers, alpha, and
-//!   `doubleSided`. Images may be PNG, JPEG or WebP, in the GLB, in `data:` URIs or in files beside the document. Textures may
-//!   use any set of texture coordinates; `KHR_texture_transform` is applied to them. A normal map is left out if it is not read
-//!   at the same coordinates as the base colour's texture. The opacity of `BLEND` becomes a [screen-door
-//!   pattern](crate::asset::material::Alpha::Dithered), which [`Model::blend`](crate::asset::Model::blend) turns into blending.
-//!   Vertex colours, everything else in materials, and materials that no mesh uses are left out.
+//!   `doubleSided`. Images may be PNG, JPEG or WebP, in the GLB, in `data:` URIs or in files beside the document.
+//! - Textures may use any set of texture coordinates; `KHR_texture_transform` is applied to the coordinates. A normal map is
+//!   left out if it is sampled at other coordinates than the base colour's texture.
+//! - The opacity of `BLEND` becomes a [screen-door pattern](crate::asset::material::Alpha::Dithered);
+//!   [`Model::blend`](crate::asset::Model::blend) turns the pattern into blending. Vertex colours, everything else in
+//!   materials, and materials that no mesh uses are left out.
 //!
 //! `extras` may be any value. Integers may be written with a fraction of 0 or an exponent.
 //!
@@ -43,26 +45,26 @@
 //! every `KHR_materials_*`. A document that requires another extension is refused; the error names the extension. Extensions
 //! that a document uses are treated as follows:
 //!
-//! | read | |
+//! | read | remarks |
 //! |---|---|
-//! | `KHR_draco_mesh_compression` | decompressed, also if there is an uncompressed form |
-//! | `EXT_meshopt_compression`, `KHR_meshopt_compression` | decompressed, also if there is an uncompressed form |
+//! | `KHR_draco_mesh_compression` | decompressed, even if the file also has the uncompressed data |
+//! | `EXT_meshopt_compression`, `KHR_meshopt_compression` | decompressed, even if the file also has the uncompressed data |
 //! | `KHR_mesh_quantization` | |
-//! | `KHR_texture_transform` | of the base colour and the normal map |
+//! | `KHR_texture_transform` | for the base colour and the normal map |
 //! | `EXT_texture_webp` | if there is no PNG or JPEG beside it |
 //! | `KHR_materials_pbrSpecularGlossiness` | the diffuse colour is the base colour |
 //! | `KHR_animation_pointer` | pointers at translation, rotation, scale and weights of nodes |
 //!
-//! | refused where it matters | |
+//! | refused | where |
 //! |---|---|
 //! | `EXT_mesh_gpu_instancing` | on a node of the scene |
 //! | `KHR_texture_basisu` (KTX2), `EXT_texture_avif`, `MSFT_texture_dds` | in a texture that is read and has no PNG, JPEG or WebP beside it; the error says how to convert it |
 //!
-//! | left out | |
+//! | left out | remarks |
 //! |---|---|
-//! | other `KHR_materials_*` | as everything in materials but base colour, normal map, alpha and `doubleSided`; meshes have their default material of `KHR_materials_variants` |
+//! | other `KHR_materials_*` | of materials, only base colour, normal map, alpha and `doubleSided` are read; with `KHR_materials_variants`, meshes keep their default material |
 //! | `KHR_lights_punctual`, cameras | |
-//! | `KHR_animation_pointer` at anything else | |
+//! | `KHR_animation_pointer` with any other target | |
 //! | `KHR_node_visibility` | hidden nodes are read like others |
 //! | `MSFT_lod` | the finest level is read |
 //! | `EXT_mesh_features`, `EXT_structural_metadata`, and others that add data to meshes | |
@@ -72,13 +74,14 @@
 //! # Limits
 //!
 //! Every error names the fault with its path in the file (`accessors[3].count`). No file causes a panic. No file causes an
-//! allocation out of proportion to its bytes: counts are checked against the bytes present. Data that takes no bytes has limits
-//! of its own:
+//! allocation out of proportion to its size, because counts are checked against the bytes present. Data that takes no bytes in
+//! the file has separate limits:
 //!
-//! - An accessor without a buffer view has at most 65,536 elements, or one for each byte of the document and its buffers.
+//! - An accessor without a buffer view has at most 65,536 elements, or one for each byte of the document and its buffers,
+//!   whichever is more.
 //! - Data that is read repeatedly (meshes of several nodes, keys of several channels) has at most 128 elements per byte up to
-//!   16 million, or 4 per byte, 16 if meshes are compressed.
-//! - Images have at most 256 texels per byte, or 16 million, and 8192 in width and height.
+//!   16 million elements in total, or 4 per byte; or 16 per byte if meshes are compressed.
+//! - Images have at most 256 texels per byte, or 16 million texels in total. Their width and height are at most 8192.
 
 mod accessor;
 pub(super) mod budget;
@@ -107,14 +110,15 @@ use crate::InputError;
 use document::Document;
 use materials::Materials;
 
-/// Callback that reads a file, given its path relative to the folder of another file.
+/// Callback that reads a file. It receives the file's path relative to the folder of the imported file.
 pub type Beside<'a> = &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>;
 
 impl Model {
-    /// Reads glTF from memory. External buffers are read from `folder`; without a folder they are refused.
+    /// Reads glTF from memory. External buffers and images are read from `folder`; if it is `None`, documents that need them
+    /// are refused.
     ///
     /// # Errors
-    /// [`InputError`] with the path in the file.
+    /// [`InputError`] with the path of the fault in the file.
     pub fn from_gltf(bytes: &[u8], folder: Option<&Path>) -> Result<Self, InputError> {
         match folder {
             Some(folder) => Self::from_gltf_beside(bytes, &|name| std::fs::read(folder.join(name))),
@@ -122,16 +126,16 @@ impl Model {
         }
     }
 
-    /// Reads glTF from memory. `beside` reads external buffers and images, given their paths relative to the document's folder.
-    /// It works without a file system.
+    /// Reads glTF from memory. The function `beside` reads external buffers and images; it receives their paths relative to the
+    /// document's folder. No file system is needed.
     ///
     /// # Errors
-    /// [`InputError`] with the path in the file.
+    /// [`InputError`] with the path of the fault in the file.
     pub fn from_gltf_beside(bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
         Self::import(bytes, Some(beside), Materials::default())
     }
 
-    /// As [`Model::from_gltf_beside`], without materials and images.
+    /// Reads glTF like [`Model::from_gltf_beside`], but leaves out materials and images.
     pub(super) fn from_gltf_bare(bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
         Self::import(bytes, Some(beside), Materials::unread())
     }

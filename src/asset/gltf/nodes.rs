@@ -1,4 +1,4 @@
-//! Reads nodes and skins: the skeleton, and a skin for every mesh without one.
+//! Reads nodes and skins. Builds the skeleton, and a skin for every mesh without one.
 
 use gltf_json::Root;
 use gltf_json::animation::Property;
@@ -12,14 +12,14 @@ use crate::InputError;
 use crate::asset::skeleton::{Bone, Skeleton, Skin, inverse_bind};
 use crate::asset::transform::{Transform, decomposed};
 
-/// The skeleton of the scene, with the mapping from nodes to bones.
+/// The skeleton and the skins of the scene, with the mapping from nodes to bones.
 pub struct Nodes {
     pub skeleton: Skeleton,
-    /// The skins of the document that the scene uses, then one skin for each of [`Nodes::rigid`].
+    /// First the skins of the document that the scene uses, then one skin for each entry of [`Nodes::rigid`].
     pub skins: Vec<Skin>,
-    /// Nodes of the scene with a mesh and a skin: the node, and the index of its skin in [`Nodes::skins`].
+    /// Nodes of the scene with a mesh and a skin: the index of the node, and the index of its skin in [`Nodes::skins`].
     pub skinned: Vec<(usize, usize)>,
-    /// Nodes of the scene with a mesh and no skin.
+    /// Nodes of the scene with a mesh but no skin.
     pub rigid: Vec<Rigid>,
     bones: Vec<Option<u32>>,
 }
@@ -64,18 +64,18 @@ impl Nodes {
         self.skins.len() - self.rigid.len()
     }
 
-    /// Bone of a node, if the node is a bone.
+    /// Bone index of a node; `None` if the node is not a bone.
     pub fn bone(&self, node: usize) -> Option<usize> {
         self.bones.get(node).copied().flatten().map(|bone| bone as usize)
     }
 }
 
-/// The node's name, or one made from its index.
+/// The node's name, or a name made from its index if it has none.
 pub fn node_name(root: &Root, node: usize) -> String {
     root.nodes[node].name.clone().unwrap_or_else(|| format!("node_{node}"))
 }
 
-/// Skins used by the scene's nodes, and unused ones whose joints all lie in the scene.
+/// Skins that the scene's nodes use, and skins that no node uses but whose joints all lie in the scene.
 fn used_skins(root: &Root, scene: &Scene) -> Vec<usize> {
     let (mut here, mut anywhere) = (vec![false; root.skins.len()], vec![false; root.skins.len()]);
     for (node, skin) in root.nodes.iter().enumerate().filter_map(|(at, node)| Some((at, node.skin?.value())))
@@ -87,7 +87,7 @@ fn used_skins(root: &Root, scene: &Scene) -> Vec<usize> {
     (0..root.skins.len()).filter(|skin| here[*skin] || !anywhere[*skin] && lies_here(*skin)).collect()
 }
 
-/// Joints of these skins as node indices, each once.
+/// Node indices of the joints of `skins`, each once.
 fn joints(root: &Root, skins: &[usize]) -> Result<Vec<usize>, InputError> {
     let mut seen = vec![false; root.nodes.len()];
     let mut joints = Vec::new();
@@ -124,7 +124,7 @@ fn animated(root: &Root) -> Vec<bool> {
     animated
 }
 
-/// Nodes of the scene with a mesh and one of these skins, each with the index of its skin in `skins`.
+/// Nodes of the scene with a mesh and one of `skins`. Each has the position of its skin in that list.
 fn skinned(root: &Root, scene: &Scene, skins: &[usize]) -> Vec<(usize, usize)> {
     let mut place = vec![None; root.skins.len()];
     skins.iter().enumerate().for_each(|(at, skin)| place[*skin] = Some(at));
@@ -132,7 +132,7 @@ fn skinned(root: &Root, scene: &Scene, skins: &[usize]) -> Vec<(usize, usize)> {
     nodes.filter_map(|(at, node)| Some((at, place[node.skin?.value()]?))).collect()
 }
 
-/// These nodes and all their ancestors, in depth-first order.
+/// Returns the nodes in `wanted` and all their ancestors, in depth-first order.
 fn order(nodes: &[Node], scene: &Scene, wanted: &[usize]) -> Vec<usize> {
     let needed = scene.with_ancestors(wanted);
     let is_root = |node: &usize| needed[*node] && scene.parents[*node].is_none();
@@ -145,7 +145,7 @@ fn order(nodes: &[Node], scene: &Scene, wanted: &[usize]) -> Vec<usize> {
     order
 }
 
-/// Skeleton of the nodes in `order`. If there are no skins, all bones are joints.
+/// Builds the skeleton from the nodes in `order`. If there are no skins, all bones are joints.
 fn skeleton(
     root: &Root,
     scene: &Scene,
@@ -164,7 +164,7 @@ fn skeleton(
     }
 }
 
-/// The transform of a node at rest.
+/// Transform of a node in its rest pose, relative to its parent.
 pub fn rest(index: usize, node: &Node) -> Result<Transform, InputError> {
     let path = format!("nodes[{index}]");
     if let Some(matrix) = &node.matrix {

@@ -19,26 +19,26 @@ use crate::asset::morph::{MorphDelta, MorphTarget};
 use crate::asset::skeleton::Skin;
 use crate::asset::tangents::TangentMesh as Surface;
 
-/// Elements charged per vertex for data that the import adds where the file lacks it: normal, tangent, texture coordinates and
-/// influence.
+/// Elements charged to the budget per vertex for data that the import adds if the file lacks it: normal, tangent, texture
+/// coordinates and influence.
 const LACKING: usize = 4;
 
-/// A primitive, with its path in the file.
+/// Reads one primitive, whose path in the file it knows.
 pub(super) struct Reader<'a, 'd> {
     pub(super) document: &'a Document<'d>,
     pub(super) primitive: &'a Primitive,
     pub(super) path: String,
-    /// Whether the node has no skin.
+    /// Whether the primitive's node has no skin.
     pub(super) is_rigid: bool,
-    /// Whether materials are left out.
+    /// Whether the import leaves out materials.
     pub(super) is_bare: bool,
-    /// The primitive decompressed, if it is compressed with Draco.
+    /// The decompressed primitive, if it is compressed with Draco.
     pub(super) decompressed: Option<Decompressed<'a>>,
 }
 
 impl<'d> Reader<'_, 'd> {
-    /// Reads the primitive as a mesh of skin 0, without name, material and weights. `skin` has the bones that it may follow.
-    /// `targets` is the number of morph targets of the mesh's first primitive, which all primitives must have.
+    /// Reads the primitive as a mesh that follows skin 0, without name, material and weights. Its influences must refer to the
+    /// bones of `skin`. `targets` is the number of morph targets that every primitive of the file's mesh must have.
     pub(super) fn mesh(&self, skin: &Skin, targets: usize) -> Result<Mesh, InputError> {
         let path = self.named("POSITION");
         let Some(positions) = self.elements(&Semantic::Positions) else {
@@ -77,7 +77,8 @@ impl<'d> Reader<'_, 'd> {
         Ok(mesh)
     }
 
-    /// Tangents of the file if it also has the matching normals and texture coordinates; otherwise those of MikkTSpace.
+    /// Returns the file's tangents if it also has normals and the texture coordinates that tangents need; otherwise computes
+    /// tangents.
     fn tangents(
         &self,
         positions: &[[f32; 3]],
@@ -105,8 +106,8 @@ impl<'d> Reader<'_, 'd> {
         self.primitive.material.map(|material| &self.document.root.materials[material.value()])
     }
 
-    /// Texture coordinates of the mesh: those of the base colour's texture, which must exist, or of the normal map if there is
-    /// no such texture. Without either, the first set, if there is one.
+    /// Texture coordinates of the mesh. If the material has a base colour texture, or else a normal map, its coordinates are
+    /// used and must exist. Without both textures, the first set is used, if there is one.
     fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(texture) = self.coordinates_of_material() else {
             return self.attribute::<2>(&Semantic::TexCoords(0), vertices);
@@ -121,15 +122,15 @@ impl<'d> Reader<'_, 'd> {
         Ok(Some(uv))
     }
 
-    /// Coordinates at which the material's textures are sampled.
+    /// Coordinates at which the material's base colour texture is sampled, or else its normal map.
     fn coordinates_of_material(&self) -> Option<Coordinates<'_>> {
         let index = self.primitive.material.filter(|_| !self.is_bare)?;
         let of_color = Coordinates::of_color(&self.document.root.materials[index.value()]);
         of_color.or_else(|| Coordinates::of_normals(self.document, index))
     }
 
-    /// Untransformed texture coordinates along which tangents run, if they differ from the mesh's: those of the normal texture,
-    /// or those of the base colour's texture if that has a transform.
+    /// Untransformed texture coordinates along which tangents run; `None` if the mesh has the same coordinates. They are the
+    /// normal map's coordinates, if the primitive has them, otherwise the mesh's coordinates before a transform.
     fn coordinates_of_normals(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(index) = self.primitive.material.filter(|_| !self.is_bare) else { return Ok(None) };
         let of_mesh = self.coordinates_of_material();
@@ -147,14 +148,14 @@ impl<'d> Reader<'_, 'd> {
         format!("{}.attributes.{attribute}", self.path)
     }
 
-    /// The elements of an attribute; `None` if the primitive lacks it.
+    /// Reader for the elements of an attribute; `None` if the primitive lacks the attribute.
     fn elements(&self, semantic: &Semantic) -> Option<Elements<'_, 'd>> {
         let accessor = *self.primitive.attributes.get(&Checked::Valid(semantic.clone()))?;
         let compressed = self.decompressed.as_ref().map(|primitive| (primitive, semantic.to_string()));
         Some(Elements { document: self.document, accessor, compressed })
     }
 
-    /// Attribute with one value per vertex, in range; `None` if the primitive lacks it.
+    /// Reads an attribute, and checks that it has one value per vertex, in range. `None` if the primitive lacks the attribute.
     fn attribute<const N: usize>(
         &self,
         semantic: &Semantic,
@@ -164,7 +165,7 @@ impl<'d> Reader<'_, 'd> {
         one_a_vertex(&self.named(&semantic.to_string()), elements.attributes()?, vertices).map(Some)
     }
 
-    /// Unit normals of the file. If the file has none, or one without length, they are computed from the triangles.
+    /// Unit normals from the file. Missing normals, and normals without length, are computed from the triangles.
     fn normals(&self, positions: &[[f32; 3]], indices: &[u32]) -> Result<Vec<[f32; 3]>, InputError> {
         let Some(given) = self.attribute::<3>(&Semantic::Normals, positions.len())? else {
             return Ok(smooth_normals(positions, indices));
@@ -177,7 +178,7 @@ impl<'d> Reader<'_, 'd> {
         Ok(units.into_iter().zip(smooth).map(|(unit, smooth)| unit.unwrap_or(smooth)).collect())
     }
 
-    /// Reads all sets of four joints and weights.
+    /// Reads the influences of each vertex from all sets of four joints and weights.
     fn influences(&self, vertices: usize, bones: usize) -> Result<Influences, InputError> {
         let mut all: Vec<Vec<Influence>> = vec![Vec::with_capacity(4); vertices];
         for set in 0.. {
@@ -203,7 +204,7 @@ impl<'d> Reader<'_, 'd> {
         Influences::new(&self.named("WEIGHTS_0"), bones, all)
     }
 
-    /// Converts lists, strips and fans to lists. Points and lines give no triangles.
+    /// Returns the triangles as a list of indices, converted from lists, strips or fans. Points and lines give no triangles.
     fn triangles(&self, vertices: usize) -> Result<Vec<u32>, InputError> {
         let indices: Vec<u32> = match (&self.decompressed, self.primitive.indices) {
             (Some(decompressed), _) => decompressed.indices(),
@@ -213,9 +214,9 @@ impl<'d> Reader<'_, 'd> {
         check_indices(&format!("{}.indices", self.path), &indices, vertices)?;
         // Draco data is always a triangle list, whatever the primitive's mode says.
         let mode = if self.decompressed.is_some() { Mode::Triangles } else { self.primitive.mode.unwrap() };
-        // Strips and fans have about one triangle per index, so three indices are charged for each.
+        // Strips and fans have about one triangle per index, so each index is charged as three.
         self.document.budget.spend(&self.path, 3 * indices.len())?;
-        // Strips are joined by degenerate triangles.
+        // Strips contain degenerate triangles that join their parts; these are dropped.
         let is_flat = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
         let corners = |at: usize| [indices[at], indices[at + 1], indices[at + 2]];
         let windows = 0..indices.len().saturating_sub(2);
@@ -265,7 +266,7 @@ impl<'d> Reader<'_, 'd> {
     }
 }
 
-/// Refuses values that are out of range, and lists that are not one value per vertex.
+/// Checks that there is one value per vertex, and that all values are in range.
 fn one_a_vertex<const N: usize>(
     path: &str,
     values: Vec<[f32; N]>,
@@ -280,16 +281,17 @@ fn check_count(path: &str, count: usize, vertices: usize) -> Result<(), InputErr
     InputError::check_same(format!("{path}.count"), count, vertices, "one a vertex")
 }
 
-/// Keeps the strongest influences of a vertex that has more than [`MAX_INFLUENCES`].
+/// If a vertex has more than [`MAX_INFLUENCES`] influences, keeps the strongest.
 fn strongest(all: &mut Vec<Influence>) {
     if all.iter().filter(|influence| influence.weight != 0.0).count() > MAX_INFLUENCES {
-        // NaN weights sort first, so that they are kept and refused later.
+        // NaN weights sort first, so that they are kept here and refused later.
         all.sort_by(|a, b| b.weight.abs().total_cmp(&a.weight.abs()));
         all.truncate(MAX_INFLUENCES);
     }
 }
 
-/// Converts a tangent between glTF's handedness and this crate's: glTF's bitangent points up in the image.
+/// Converts a tangent from glTF's handedness to this crate's, or back. In glTF, the bitangent points up in the image; here, it
+/// points down.
 pub(super) fn flipped([x, y, z, w]: [f32; 4]) -> [f32; 4] {
     [x, y, z, if w < 0.0 { 1.0 } else { -1.0 }]
 }

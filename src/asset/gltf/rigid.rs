@@ -1,4 +1,4 @@
-//! Meshes without a skin. Each follows, as a whole, the lowest node at or above its own that may move.
+//! Meshes without a skin. Such a mesh follows one node as a whole: the lowest node that may move, at or above the mesh's node.
 
 use glam::DMat4;
 use gltf_json::Root;
@@ -11,14 +11,14 @@ use crate::asset::skeleton::inverse_bind;
 /// A node with a mesh and no skin.
 pub struct Rigid {
     pub node: usize,
-    /// Node that the mesh follows: its own or an ancestor. It must be a bone.
+    /// Node that the mesh follows: the mesh's own node or an ancestor. This node must become a bone.
     pub anchor: usize,
-    /// Matrix from the mesh's space to the anchor's, column-major.
+    /// Matrix from the mesh's space to the anchor's space, column-major.
     pub bind: [f32; 16],
 }
 
-/// All nodes of the scene with a mesh and no skin, in the order of the nodes. An anchor is a joint, an ancestor of joints, or
-/// an animated node; otherwise it is the root of the tree.
+/// Returns all nodes of the scene with a mesh but no skin, in the order of the nodes. The anchor of such a node is the lowest
+/// node, at or above it, that is a joint, an ancestor of joints, or animated; otherwise it is the root of the tree.
 pub fn rigid(
     root: &Root,
     scene: &Scene,
@@ -37,11 +37,11 @@ pub fn rigid(
     nodes.into_iter().map(|node| followed.rigid(node)).collect()
 }
 
-/// For each node, its anchor and the matrix from the node's space to the anchor's.
+/// For each node, its anchor, and the matrix from the node's space to the anchor's space.
 struct Followed(Vec<Option<(usize, DMat4)>>);
 
 impl Followed {
-    /// Finds the anchors of the nodes in `wanted`, which must contain all their ancestors.
+    /// Finds the anchors of the nodes in `wanted`. This set must contain all ancestors of its nodes.
     fn new(
         root: &Root,
         scene: &Scene,
@@ -71,7 +71,7 @@ impl Followed {
     }
 }
 
-/// Local matrix of a node: the file's, sheared or not, or the product of its translation, rotation and scale.
+/// Local matrix of a node: the matrix of the file, which may have shear, or the product of translation, rotation and scale.
 fn local(root: &Root, node: usize) -> Result<DMat4, InputError> {
     if let Some(matrix) = &root.nodes[node].matrix {
         inverse_bind(&format!("nodes[{node}].matrix"), matrix)?;

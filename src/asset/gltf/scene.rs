@@ -7,14 +7,16 @@ use crate::InputError;
 
 /// The nodes of the default scene.
 pub struct Scene {
-    /// Parent of each node of the document; `None` for a node that the scene lists as a root.
+    /// For each node of the document, its parent. `None` for nodes without a parent, and for nodes that the scene lists as
+    /// roots.
     pub parents: Vec<Option<usize>>,
     /// For each node of the document, whether it lies in the scene.
     pub contains: Vec<bool>,
 }
 
 impl Scene {
-    /// The scene that the document names, or else its first. If the document has no scene, all nodes.
+    /// Reads the default scene that the document names, or else its first scene. If the document has no scene, the result
+    /// contains all nodes.
     ///
     /// # Errors
     /// [`InputError`] for nodes that do not form trees, and for a scene whose root node has a parent in the scene.
@@ -42,7 +44,7 @@ impl Scene {
         Ok(Self { parents, contains })
     }
 
-    /// For each node, whether it is one of `nodes` or an ancestor of one.
+    /// For each node, whether it is in `nodes` or is an ancestor of such a node.
     pub fn with_ancestors(&self, nodes: &[usize]) -> Vec<bool> {
         let mut marked = vec![false; self.parents.len()];
         for node in nodes {
@@ -54,7 +56,7 @@ impl Scene {
         marked
     }
 
-    /// Children of a node, except roots of the scene.
+    /// Children of a node. Nodes that the scene lists as roots are left out.
     pub fn children<'a>(
         &'a self,
         nodes: &'a [Node],
@@ -65,7 +67,7 @@ impl Scene {
     }
 }
 
-/// Finds the parent of each node. Refuses a node with two parents.
+/// For each node, its parent. Refuses a node with two parents.
 fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, InputError> {
     let mut parents = vec![None; nodes.len()];
     for (parent, node) in nodes.iter().enumerate() {
@@ -81,7 +83,7 @@ fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, InputError> {
     Ok(parents)
 }
 
-/// For each node, whether it is one of `roots` or a descendant of one.
+/// For each node, whether it is in `roots` or is a descendant of such a node.
 fn below(nodes: &[Node], roots: &[usize]) -> Vec<bool> {
     let mut reached = vec![false; nodes.len()];
     let mut waiting = roots.to_vec();

@@ -1,5 +1,5 @@
-//! Tangents for vertices without any, computed by MikkTSpace, as glTF 2.0 requires in section 3.7.2.1. If the corners of a
-//! vertex have different tangents, for example where texture coordinates are mirrored, each tangent gets a vertex of its own.
+//! Computes tangents for meshes without any by MikkTSpace, as glTF 2.0 requires in section 3.7.2.1. If the corners of a vertex
+//! have different tangents, for example where texture coordinates are mirrored, the vertex is duplicated for each tangent.
 
 use std::collections::HashMap;
 
@@ -10,21 +10,22 @@ use crate::asset::mesh::Mesh;
 use crate::asset::tangents::{TangentMesh as Surface, tangents};
 
 /// Largest number of triangles around a vertex for which MikkTSpace is used. Its time grows with the square of that number, and
-/// it visits the triangles by recursion. Surfaces with more triangles around a vertex get the tangents that
-/// [`crate::surface::tangent`] solves.
+/// it visits the triangles by recursion. A surface with more triangles around a vertex gets the tangents of
+/// [`crate::surface::tangent`].
 const MAX_AROUND: u32 = 1024;
 
-/// Tangents of vertices, including new copies of vertices.
+/// The tangents of a surface, and the vertices that were duplicated for them.
 pub struct Tangents {
-    /// Tangents in this crate's handedness: one per vertex, then one per copy.
+    /// Tangents in this crate's handedness: one per original vertex, then one per copy.
     pub tangents: Vec<[f32; 4]>,
-    /// Three indices per triangle, into the vertices followed by the copies.
+    /// Three vertex indices per triangle. Copies are numbered after the original vertices.
     pub indices: Vec<u32>,
-    /// For each copy, the vertex that it repeats in all but the tangent.
+    /// For each copy, the original vertex. The copy differs only in the tangent.
     pub copied: Vec<u32>,
 }
 
-/// One tangent per vertex from the solver, without copies. It is the fallback where MikkTSpace cannot be used.
+/// Computes one tangent per vertex with the solver of [`crate::surface::tangent`]. No vertex is duplicated. This is the
+/// fallback where MikkTSpace cannot be used.
 ///
 /// # Errors
 /// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.
@@ -33,10 +34,11 @@ pub fn solved(surface: &Surface<'_>) -> Result<Tangents, InputError> {
     Ok(Tangents { tangents: tangents(surface)?, indices, copied: Vec::new() })
 }
 
-/// Tangents by MikkTSpace. A vertex gets a solved tangent if none of its triangles has an area in space and in texture space.
+/// Computes tangents by MikkTSpace. If no triangle at a vertex has an area in space and in texture space, the vertex gets the
+/// tangent of [`solved`].
 ///
 /// # Errors
-/// As [`solved`].
+/// The errors of [`solved`].
 pub fn generated(surface: &Surface<'_>) -> Result<Tangents, InputError> {
     let mut found = solved(surface)?;
     let mut faces = Faces::new(surface);
@@ -63,7 +65,7 @@ pub fn generated(surface: &Surface<'_>) -> Result<Tangents, InputError> {
 }
 
 impl Tangents {
-    /// Sets the tangents and triangles of a mesh, and appends the copies to its vertices.
+    /// Sets the tangents and triangles of a mesh, and appends the duplicated vertices.
     pub fn apply(self, mesh: &mut Mesh) {
         let Self { tangents, indices, copied } = self;
         for vertex in copied {
@@ -78,12 +80,13 @@ impl Tangents {
     }
 }
 
-/// Triangles with three different corners. Others would slow MikkTSpace down without changing the result.
+/// Triangles whose three corners have different positions. Other triangles would slow MikkTSpace down without changing the
+/// result.
 struct Faces<'a> {
     surface: &'a Surface<'a>,
-    /// Start of each triangle in the indices.
+    /// For each triangle, the position of its first corner in the index list.
     first: Vec<usize>,
-    /// One tangent per corner.
+    /// For each triangle corner, the tangent that MikkTSpace found, if any.
     tangents: Vec<Option<[f32; 4]>>,
 }
 
@@ -99,7 +102,7 @@ impl<'a> Faces<'a> {
         Self { surface, first, tangents }
     }
 
-    /// Indices of the triangles' corners in the index list.
+    /// Positions of the triangles' corners in the index list.
     fn corners(&self) -> impl Iterator<Item = usize> {
         self.first.iter().flat_map(|first| *first..first + 3)
     }
@@ -108,7 +111,7 @@ impl<'a> Faces<'a> {
         self.surface.indices[self.first[face] + corner] as usize
     }
 
-    /// Whether too many triangles meet at some vertex.
+    /// Whether more than [`MAX_AROUND`] triangles meet at some vertex.
     fn is_crowded(&self) -> bool {
         let Surface { positions, normals, uv, indices } = self.surface;
         let mut around: HashMap<_, u32> = HashMap::new();
@@ -122,7 +125,7 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// Bit patterns that are equal for equal values: −0 and +0 give the same.
+/// Bit patterns of the components. Equal values give equal bits: −0 and +0 give the same.
 fn bits<const N: usize>(vector: [f32; N]) -> [u32; N] {
     one_zero(vector).map(f32::to_bits)
 }
@@ -131,7 +134,7 @@ fn one_zero<const N: usize>(vector: [f32; N]) -> [f32; N] {
     vector.map(|number| number + 0.0)
 }
 
-/// Mathematical functions with the same results on every machine.
+/// Square root and arc cosine with the same results on every machine.
 struct Libm;
 
 impl Ops for Libm {
@@ -166,9 +169,9 @@ impl Geometry<Libm> for Faces<'_> {
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
-        // The bitangents of MikkTSpace and of this crate run along v, which points down the image; glTF's points up.
+        // The bitangents of MikkTSpace and of this crate point down the image; glTF's bitangent points up.
         let tangent = space.map(|space| space.tangent_encoded());
-        // No usable tangent if no triangle around the vertex has an area, or if numbers were too large or small.
+        // A tangent is unusable if no triangle around the vertex has an area, or if numbers were too large or too small.
         let length = |[x, y, z, _]: &[f32; 4]| x * x + y * y + z * z;
         self.tangents[3 * face + corner] =
             tangent.filter(|tangent| (length(tangent) - 1.0).abs() < 1e-3).map(one_zero);

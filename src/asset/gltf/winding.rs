@@ -1,13 +1,13 @@
 //! Winding: reverses triangles that are mirrored at rest, so that they are counter-clockwise seen from outside wherever the
-//! mesh is drawn. The sign of the determinant decides (glTF 2.0, section 3.7.4). For a skinned mesh, the determinant is that of
-//! each joint's global transform times its inverse bind matrix, because the mesh's own node has no effect.
+//! mesh is drawn. The sign of the determinant decides (glTF 2.0, section 3.7.4). For a skinned mesh, the matrix is each joint's
+//! global transform times its inverse bind matrix, because the transform of the mesh's own node has no effect.
 
 use glam::DMat4;
 
 use crate::asset::Mesh;
 use crate::asset::skeleton::{Skeleton, Skin};
 
-/// For each bone, whether its global transform at rest is mirrored. A singular transform counts as not mirrored.
+/// For each bone, whether its global transform mirrors in the rest pose. A singular transform counts as not mirroring.
 pub fn mirrored(skeleton: &Skeleton) -> Vec<bool> {
     let mut mirrored: Vec<bool> = Vec::with_capacity(skeleton.len());
     for bone in skeleton.bones() {
@@ -18,8 +18,8 @@ pub fn mirrored(skeleton: &Skeleton) -> Vec<bool> {
     mirrored
 }
 
-/// For each bone of a skin, whether it mirrors the vertices that follow it; empty if no bone does. `mirrored`
-/// covers all bones of the skeleton.
+/// For each bone of a skin, whether it mirrors the vertices that follow it; empty if no bone mirrors. `mirrored` has one entry
+/// per bone of the skeleton.
 pub fn mirrors(mirrored: &[bool], skin: &Skin) -> Vec<bool> {
     let is_inverted = |bind: &[f32; 16]| DMat4::from_cols_array(&bind.map(f64::from)).determinant() < 0.0;
     let binds = skin.bones.iter().zip(&skin.inverse_binds);
@@ -27,9 +27,10 @@ pub fn mirrors(mirrored: &[bool], skin: &Skin) -> Vec<bool> {
     if all.contains(&true) { all } else { Vec::new() }
 }
 
-/// Reverses triangles whose three corners each follow mirrored bones with more than half of their weight.
+/// Reverses triangles whose corners follow mirroring bones: the weights of these bones, added over the three corners, exceed
+/// 1.5.
 pub fn turn_mirrored(mesh: &mut Mesh, mirrors: &[bool]) {
-    // Early exit for skins without mirrored bones: files may have many meshes with large skins.
+    // Early exit for skins without mirroring bones, because files may have many meshes with large skins.
     if mirrors.is_empty() {
         return;
     }

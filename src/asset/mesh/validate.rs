@@ -1,4 +1,4 @@
-//! Checks of a mesh: lengths, indices and ranges, level by level and target by target.
+//! Checks of a mesh: lengths, indices and ranges, for each level and each morph target.
 
 use super::{MAX_LEVELS, MAX_VERTICES, Mesh};
 use crate::InputError;
@@ -7,10 +7,10 @@ use crate::asset::skeleton::Skin;
 use crate::asset::tangents::{in_range, numbers_in_range};
 
 impl Mesh {
-    /// Checks lengths, indices and ranges, and that the mesh matches its skin.
+    /// Checks lengths, indices and ranges of all fields, and that the mesh matches its skin.
     ///
     /// # Errors
-    /// [`InputError`] that names the field, with its index.
+    /// [`InputError`] that names the wrong field, with its index.
     pub fn validate(&self, skins: &[Skin]) -> Result<(), InputError> {
         InputError::check_below("mesh.skin", self.skin, skins.len())?;
         let skin = &skins[self.skin];
@@ -25,7 +25,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// As [`Mesh::validate`], without the skin.
+    /// Checks the mesh like [`Mesh::validate`], but without its skin.
     pub(crate) fn validate_alone(&self) -> Result<(), InputError> {
         let vertices = self.vertices();
         InputError::check_most("mesh.positions.len", vertices, MAX_VERTICES)?;
@@ -87,7 +87,7 @@ impl Mesh {
                 return Err(InputError::new(format!("mesh.partners[{vertex}]"), partner, bound));
             };
             let own = coarsest[vertex as usize];
-            // This makes every chain of partners end.
+            // With this condition, every chain of partners ends.
             if !(partner == &vertex
                 || *level > own
                 || *level == own && self.partners[*partner as usize] == *partner)
@@ -99,7 +99,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// For each vertex, whether the triangles of `indices` use it.
+    /// For each vertex, whether a triangle of `indices` uses it.
     fn used(&self, indices: &[u32]) -> Vec<bool> {
         let mut used = vec![false; self.vertices()];
         indices.iter().for_each(|vertex| used[*vertex as usize] = true);
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn levels_are_nested_and_coarser_and_coarser() {
-        // A level with both triangles, then one with the first.
+        // Level 0 has two triangles; the other levels have the given triangles and errors.
         let levelled = |levels: &[(&[u32], f32)]| {
             let (mut mesh, skins) = triangle();
             mesh.indices = vec![0, 1, 2, 2, 1, 0];

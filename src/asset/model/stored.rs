@@ -1,4 +1,4 @@
-//! Validation of models read with serde.
+//! Validation of models that serde has read.
 
 use image::RgbaImage;
 use serde::Deserialize;
@@ -7,7 +7,7 @@ use super::Model;
 use crate::InputError;
 use crate::asset::{Clip, Material, Mesh, Skeleton, Skin};
 
-/// A model as read; its parts may not match.
+/// A model as serde reads it, before validation; its components may not match.
 #[derive(Deserialize)]
 #[serde(rename = "Model")]
 pub(super) struct StoredModel {
@@ -49,7 +49,7 @@ impl TryFrom<StoredModel> for Model {
     }
 }
 
-/// Serializes images as their sizes and texels.
+/// Serializes images as width, height and texels.
 pub(super) mod images {
     use image::RgbaImage;
     use serde::de::Error as _;

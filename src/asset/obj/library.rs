@@ -4,10 +4,10 @@ use super::maps::Map;
 use super::statements::{Statement, Statements};
 use crate::InputError;
 
-/// A material as its library states it.
+/// A material as an MTL library states it, before conversion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Entry {
-    /// Folder of the library; images are found relative to it.
+    /// Folder of the library. Paths of images are relative to it.
     pub folder: std::path::PathBuf,
     pub name: String,
     /// Diffuse colour (`Kd`), encoded as sRGB.
@@ -24,10 +24,10 @@ pub(super) struct Entry {
     pub bump_map: Option<Map>,
 }
 
-/// The materials of a library, in its order. `file` is its path relative to the model.
+/// Reads the materials of a library, in the order of the file. `file` is the library's path relative to the model.
 ///
 /// # Errors
-/// [`InputError`] with the line.
+/// [`InputError`] with the library's name and the line.
 pub(super) fn entries(file: &str, bytes: &[u8]) -> Result<Vec<Entry>, InputError> {
     let folder = std::path::Path::new(file).parent().unwrap_or(std::path::Path::new(""));
     let mut entries: Vec<Entry> = Vec::new();
@@ -60,7 +60,7 @@ impl Entry {
     }
 }
 
-/// Numbers of a statement, each from 0 to 1. A single number stands for all of them.
+/// Reads `N` numbers of a statement, each from 0 to 1. A single number stands for all `N`.
 fn fractions<const N: usize>(statement: &Statement<'_>, file: &str) -> Result<[f64; N], InputError> {
     let numbers: Option<Vec<f64>> = (statement.words().filter(|word| *word != "-halo"))
         .take(N)

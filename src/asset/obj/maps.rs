@@ -1,4 +1,4 @@
-//! Map statements of material libraries: options, and the name of an image.
+//! Map statements of material libraries: each has options and the name of an image.
 
 use std::path::PathBuf;
 
@@ -6,26 +6,26 @@ use super::statements::Statement;
 use crate::InputError;
 use crate::asset::beside::path_below;
 
-/// An image reference of a material.
+/// An image reference of a material, with its options.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Map {
     /// Name of the image as the file states it.
     pub name: String,
     /// Path of the image relative to the library.
     pub path: PathBuf,
-    /// Offset added to texture coordinates, v up, after scaling.
+    /// Offset added to texture coordinates after they are scaled; v points up.
     pub offset: [f64; 2],
-    /// Scale of texture coordinates.
+    /// Factors of the texture coordinates u and v.
     pub scale: [f64; 2],
-    /// Whether the image is clamped to its edge instead of repeated.
+    /// Whether the image is clamped to its edge; otherwise it repeats.
     pub is_clamped: bool,
-    /// Bump multiplier.
+    /// Strength of a bump map (option `-bm`).
     pub bump: f32,
     /// Location in the file, for errors.
     pub at: InputError,
 }
 
-/// Options that are ignored, with the number of words that follow each.
+/// Options that are ignored, each with the number of words that follow it.
 const SKIPPED: [(&str, usize); 8] = [
     ("-blendu", 1),
     ("-blendv", 1),
@@ -38,11 +38,10 @@ const SKIPPED: [(&str, usize); 8] = [
 ];
 
 impl Map {
-    /// Reads a statement of a library.
+    /// Reads a map statement of the library `file`.
     ///
     /// # Errors
-    /// [`InputError`] for options without their values, and for a name that is missing, or of a file outside the
-    /// library's folder.
+    /// [`InputError`] for options without their values, for a missing file name, and for a file outside the library's folder.
     pub fn new(statement: &Statement<'_>, file: &str) -> Result<Self, InputError> {
         let refused = |bound: &str| statement.refused(Some(file), bound);
         let mut words = Words(statement.rest());
@@ -75,18 +74,18 @@ impl Map {
         Ok(Self { name: name.to_owned(), path, offset, scale, is_clamped, bump, at })
     }
 
-    /// An error at the map's line.
+    /// Returns an error at the map's line; `bound` says what the map must be.
     pub fn refused(&self, bound: impl Into<String>) -> InputError {
         InputError { bound: bound.into(), ..self.at.clone() }
     }
 }
 
-/// Path in the form of MTL files, where backslashes separate folders, too.
+/// Replaces backslashes, which MTL files also use to separate folders, by slashes.
 pub(super) fn slashes(path: &str) -> String {
     path.replace('\\', "/")
 }
 
-/// Remaining words of a statement.
+/// The words of a statement that have not been read yet.
 struct Words<'a>(&'a str);
 
 impl<'a> Words<'a> {
@@ -97,7 +96,7 @@ impl<'a> Words<'a> {
         (!word.is_empty()).then_some(word)
     }
 
-    /// Reads one to three finite numbers; the remaining entries keep their values. `None` if there is no number.
+    /// Reads one to three finite numbers into `to`. Entries without a number keep their values. `None` if there is no number.
     fn numbers(&mut self, to: &mut [f64]) -> Option<()> {
         for at in 0..3 {
             let before = self.0;

@@ -1,4 +1,4 @@
-//! Materials of OBJ models, from their libraries, with images.
+//! Reads the materials of OBJ models, with images, from material libraries.
 
 use std::collections::HashMap;
 use std::io::ErrorKind;
@@ -17,7 +17,8 @@ use crate::asset::gltf::materials::decode;
 use crate::asset::material::{Alpha, Material, Sampling, Texture, Wrapping};
 use crate::asset::mesh::COORDINATE_LIMIT;
 
-/// Materials of the libraries that a model names. Those that the model uses are read with their images, each once.
+/// Materials of an OBJ model, from the libraries that it names. Only materials that the model uses are read, each once, with
+/// their images.
 pub(super) struct Materials<'a> {
     beside: Option<Beside<'a>>,
     budget: Budget,
@@ -32,7 +33,7 @@ pub(super) struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    /// Reads libraries, each given by its line and the text after `mtllib`.
+    /// Reads libraries. Each is given by the line of its statement and the text after `mtllib`.
     ///
     /// # Errors
     /// [`InputError`] for a library that exists and cannot be read.
@@ -48,7 +49,7 @@ impl<'a> Materials<'a> {
             moves: Vec::new(),
         };
         for (line, text) in libraries {
-            // A statement may have several names, or one name with spaces.
+            // The text after `mtllib` may be several names, or one name with spaces.
             if !found.library(*line, text)? && text.contains(char::is_whitespace) {
                 for name in text.split_whitespace() {
                     found.library(*line, name)?;
@@ -58,7 +59,7 @@ impl<'a> Materials<'a> {
         Ok(found)
     }
 
-    /// Reads a library; false if there is none of this name. If a material's name repeats, the first counts.
+    /// Reads one library; false if no library has this name. If a material's name repeats, the first material counts.
     fn library(&mut self, line: usize, name: &str) -> Result<bool, InputError> {
         let Some(beside) = self.beside else { return Ok(false) };
         let refused = |bound: String| {
@@ -80,7 +81,7 @@ impl<'a> Materials<'a> {
         Ok(true)
     }
 
-    /// Reads a material unless it was read before. Returns its index in the list; `None` if no library has it.
+    /// Reads a material on its first use. Returns its index in `materials`; `None` if no library has a material of this name.
     ///
     /// # Errors
     /// [`InputError`] with the line, for an image that cannot be read.
@@ -102,10 +103,10 @@ impl<'a> Materials<'a> {
         Ok(Some(self.materials.len() - 1))
     }
 
-    /// Transforms texture coordinates, v down, to those at which a material's images are sampled.
+    /// Applies the offset and the scale of a material's map to texture coordinates, in place; v points down.
     ///
     /// # Errors
-    /// [`InputError`] with the line of the material's map, for coordinates that leave the range.
+    /// [`InputError`] with the line of the map, for coordinates that leave the allowed range.
     pub fn move_coordinates(&self, material: usize, all: &mut [[f32; 2]]) -> Result<(), InputError> {
         let Some(map) = &self.moves[material] else { return Ok(()) };
         let ([right, up], [wide, high]) = (map.offset, map.scale);
@@ -122,7 +123,7 @@ impl<'a> Materials<'a> {
         Ok(())
     }
 
-    /// Colour texture combined with the opacity map, and whether there is an opacity map.
+    /// Combines a material's colour map and opacity map into one texture. Also returns whether there is an opacity map.
     fn texture(&mut self, entry: &Entry) -> Result<(Option<Texture>, bool), InputError> {
         let (color, opacity) = (&entry.color_map, &entry.opacity_map);
         let Some(first) = color.as_ref().or(opacity.as_ref()) else { return Ok((None, false)) };
@@ -144,7 +145,7 @@ impl<'a> Materials<'a> {
         Ok((Some(Texture { image, sampling: sampling(first) }), opacity.is_some()))
     }
 
-    /// The normal map and its scale: `norm`, or a bump map with colours.
+    /// Returns the normal map and its scale. The source is `norm`, or else a bump map that has colours.
     fn normal(&mut self, entry: &Entry) -> Result<(Option<Texture>, f32), InputError> {
         let (map, is_certain) = match (&entry.normal_map, &entry.bump_map) {
             (Some(map), _) => (map, true),
@@ -193,14 +194,14 @@ fn sampling(map: &Map) -> Sampling {
     Sampling { wrap: [wrap; 2], ..Sampling::default() }
 }
 
-/// Removes transparency from an image: only `map_d` sets it.
+/// Makes every texel of an image opaque, because only `map_d` sets transparency.
 fn opaque(mut image: RgbaImage) -> RgbaImage {
     image.pixels_mut().for_each(|texel| texel[3] = u8::MAX);
     image
 }
 
-/// Sets an image's alpha from an opacity image: the opacity image's own alpha if it has any, otherwise its brightness. The
-/// opacity image is resized to fit.
+/// Sets an image's alpha from an opacity image. The source is the opacity image's alpha if it has any transparency, otherwise
+/// its brightness. The opacity image is resized to fit.
 fn set_opacity(image: &mut RgbaImage, mut opacity: RgbaImage) {
     if opacity.dimensions() != image.dimensions() {
         opacity = resize(&opacity, image.width(), image.height(), FilterType::Triangle);
@@ -217,11 +218,11 @@ pub(super) fn linear(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// The inverse of [`linear`].
+/// Converts linear light, 0 to 1, to an sRGB channel. The inverse of [`linear`].
 pub(super) fn encoded(linear: f64) -> f64 {
     match linear {
         _ if linear <= 0.040_45 / 12.92 => 12.92 * linear,
-        // Exact, without rounding.
+        // Returns exactly 1; the formula would round.
         1.0 => 1.0,
         _ => 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055,
     }

@@ -15,14 +15,14 @@ use crate::asset::skeleton::{Bone, Skeleton, Skin};
 use crate::asset::tangents::TangentMesh as Surface;
 use crate::asset::{Influences, Model, Transform};
 
-/// Largest number of meshes of a file.
+/// Largest allowed number of meshes in a file.
 const MAX_MESHES: usize = 1 << 16;
 
-/// Name of the bone of faces without object and group.
+/// Name of the bone for faces that have no object and no group.
 const UNNAMED: &str = "mesh";
 
-/// Reads a model; `beside` reads its libraries and images. Without it, there are no materials, and no vertex is repeated for
-/// its tangents.
+/// Reads a model; `beside` reads its libraries and images. Without `beside`, there are no materials, and no vertex is
+/// duplicated for its tangents.
 pub(super) fn import(bytes: &[u8], beside: Option<Beside<'_>>) -> Result<Model, InputError> {
     let parsed = Parsed::new(bytes)?;
     let triangles = Triangles::new(&parsed)?;
@@ -65,11 +65,11 @@ pub(super) fn import(bytes: &[u8], beside: Option<Beside<'_>>) -> Result<Model, 
     })
 }
 
-/// The triangles of all faces.
+/// The triangles of all faces, in the order of the faces.
 struct Triangles {
-    /// Three corners each.
+    /// Corners of the triangles, three per triangle.
     corners: Vec<Corner>,
-    /// For each face, the number of corners before its triangles; one more entry with the total.
+    /// For each face, the index of its first entry in `corners`. One more entry holds the total number of corners.
     first: Vec<usize>,
 }
 
@@ -107,10 +107,10 @@ fn position(parsed: &Parsed, corner: &Corner) -> DVec3 {
     DVec3::from(parsed.positions[corner[0] as usize].map(f64::from))
 }
 
-/// Normals of corners: the file's, with length 1, or computed ones where the file lacks them.
+/// Normals of corners: from the file, scaled to length 1, or computed where the file has none.
 struct Normals {
     given: Vec<Option<[f32; 3]>>,
-    /// For each position, the smooth normal of adjacent faces that lack normals.
+    /// For each position, the smooth normal of the adjacent faces that have no normals in the file.
     smooth: Vec<[f32; 3]>,
 }
 
@@ -133,8 +133,8 @@ impl Normals {
     }
 }
 
-/// Builds a mesh from corners, three per triangle, without name, skin, material and tangents. Corners with the same indices of
-/// position, texture coordinates and normal share one vertex; vertices are sorted by these indices.
+/// Builds a mesh from corners, three per triangle. Name, skin, material and tangents stay unset. Corners with the same indices
+/// of position, texture coordinates and normal share one vertex; vertices are sorted by these indices.
 fn mesh(parsed: &Parsed, normals: &Normals, corners: &[Corner]) -> Result<Mesh, InputError> {
     let mut vertices = corners.to_vec();
     vertices.sort_unstable();
@@ -155,7 +155,7 @@ fn mesh(parsed: &Parsed, normals: &Normals, corners: &[Corner]) -> Result<Mesh, 
     })
 }
 
-/// Adds tangents to a mesh; with `is_bare`, the number of vertices stays the same.
+/// Adds tangents to a mesh. With `is_bare`, no vertex is duplicated for its tangents.
 fn with_tangents(mut mesh: Mesh, is_bare: bool) -> Result<Mesh, InputError> {
     let Mesh { positions, normals, uv, indices, .. } = &mesh;
     let surface = Surface { positions, normals, uv, indices };
@@ -170,18 +170,18 @@ fn with_tangents(mut mesh: Mesh, is_bare: bool) -> Result<Mesh, InputError> {
     Ok(mesh)
 }
 
-/// Bones for objects and groups, with one skin each.
+/// The bones of objects and groups; each bone has one skin.
 #[derive(Default)]
 struct Nodes {
     bones: Vec<Bone>,
     skins: Vec<Skin>,
     known: HashMap<(Option<String>, Option<String>), usize>,
-    /// For each bone, the number of its meshes.
+    /// For each bone, the number of its meshes so far.
     meshes: Vec<usize>,
 }
 
 impl Nodes {
-    /// Name and skin of the next mesh of an object and a group.
+    /// Returns the name and the skin's index for the next mesh of an object and group.
     fn mesh(&mut self, owner: &Owner) -> (String, usize) {
         let node = self.node(&owner.object, &owner.group);
         self.meshes[node] += 1;

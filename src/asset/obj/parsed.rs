@@ -7,7 +7,7 @@ use super::statements::{Statement, Statements};
 use crate::InputError;
 use crate::asset::mesh::COORDINATE_LIMIT;
 
-/// Marks missing texture coordinates or a missing normal of a corner.
+/// Index that stands for missing texture coordinates or a missing normal of a corner.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// A corner of a face: the indices of its position, texture coordinates and normal, counted from 0.
@@ -16,27 +16,27 @@ pub(super) type Corner = [u32; 3];
 /// The object, group and material to which a face belongs.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub(super) struct Owner {
-    /// The object, if one is named.
+    /// Name of the object; `None` if the face has none.
     pub object: Option<String>,
-    /// The group, if one is named.
+    /// Name of the group; `None` if the face has none.
     pub group: Option<String>,
-    /// The name of the material.
+    /// Name of the material; `None` if the face has none.
     pub material: Option<String>,
 }
 
-/// Parsed geometry of a file.
+/// Geometry of an OBJ file.
 #[derive(Default)]
 pub(super) struct Parsed {
     pub positions: Vec<[f32; 3]>,
-    /// Texture coordinates, v down the image.
+    /// Texture coordinates; v points down the image.
     pub uv: Vec<[f32; 2]>,
     /// Normals as in the file, of any length.
     pub normals: Vec<[f32; 3]>,
     /// The corners of each face, at least three.
     pub faces: Vec<Vec<Corner>>,
-    /// The line of each face.
+    /// For each face, its line in the file.
     pub lines: Vec<usize>,
-    /// Runs of faces with one owner: the index of the first face, and the owner.
+    /// Ranges of consecutive faces with the same owner: the index of the first face, and the owner.
     runs: Vec<(usize, Owner)>,
     /// Material libraries that the file names, with the line of each statement.
     pub libraries: Vec<(usize, String)>,
@@ -50,8 +50,8 @@ impl Parsed {
     /// Reads the text of an OBJ file.
     ///
     /// # Errors
-    /// [`InputError`] with the line, for a statement that cannot be read, an index of something that does not exist, and a
-    /// coordinate out of range; and for a file without faces.
+    /// [`InputError`] with the line, for a statement that cannot be read, an index without a counterpart, and a coordinate out
+    /// of range. [`InputError`] also for a file without faces.
     pub fn new(bytes: &[u8]) -> Result<Self, InputError> {
         let mut parsed = Self::default();
         let mut owner = Owner::default();
@@ -62,7 +62,7 @@ impl Parsed {
                 "vn" => parsed.normals.push(vector(&statement)?),
                 "vt" => parsed.uv.push(coordinates(&statement)?),
                 "f" | "fo" => parsed.add_face(&statement, &owner)?,
-                // A group belongs to the object before it.
+                // A new object ends the group, because a group belongs to one object.
                 "o" => (owner.object, owner.group) = (name(), None),
                 "g" => owner.group = name(),
                 "usemtl" => owner.material = name(),
@@ -77,7 +77,7 @@ impl Parsed {
         Ok(parsed)
     }
 
-    /// Adds a face to the last run, or to a new one if the owner differs.
+    /// Adds a face to the last run of faces, or to a new run if the owner differs.
     fn add_face(&mut self, statement: &Statement<'_>, owner: &Owner) -> Result<(), InputError> {
         let corners: Result<Vec<Corner>, &str> = statement.words().map(|word| self.corner(word)).collect();
         let corners = corners.map_err(|bound| statement.refused(None, bound))?;
@@ -93,9 +93,9 @@ impl Parsed {
         Ok(())
     }
 
-    /// Parses the indices of a corner. The error says what the word must be.
+    /// Parses the indices of a corner, such as `1/2/3`. The error says what the word must be.
     fn corner(&self, word: &str) -> Result<Corner, &'static str> {
-        // Some exporters end a corner without a normal with a slash.
+        // Some exporters write a slash at the end of a corner without a normal.
         let parts: Vec<&str> = word.trim_end_matches('/').split('/').collect();
         let [v, vt, vn] = [self.positions.len(), self.uv.len(), self.normals.len()];
         match parts[..] {
@@ -107,7 +107,7 @@ impl Parsed {
         }
     }
 
-    /// The runs of each owner, in the order of their first faces.
+    /// For each owner, the ranges of its faces. Owners are in the order of their first faces.
     pub fn parts(&self) -> Vec<(&Owner, Vec<Range<usize>>)> {
         let mut parts: Vec<(&Owner, Vec<_>)> = Vec::new();
         let mut known = HashMap::new();
@@ -123,8 +123,8 @@ impl Parsed {
     }
 }
 
-/// Converts an index that counts from 1, or backwards from −1, to one below `count` that counts from 0. The error says what the
-/// word must be.
+/// Converts an index of the file, from 1 upwards or from −1 backwards, to an index from 0 that is below `count`. The error says
+/// what the word must be.
 fn number(word: &str, count: usize) -> Result<u32, &'static str> {
     let given: i64 = word.parse().map_err(|_| CORNERS)?;
     let at = if given < 0 { given + count as i64 } else { given - 1 };
@@ -132,7 +132,7 @@ fn number(word: &str, count: usize) -> Result<u32, &'static str> {
     if (0..count as i64).contains(&at) { Ok(at as u32) } else { Err(bound) }
 }
 
-/// Reads three numbers. Weights and colours of positions, which may follow, are ignored.
+/// Reads three numbers. Further numbers, such as the weight or colour of a position, are ignored.
 fn vector(statement: &Statement<'_>) -> Result<[f32; 3], InputError> {
     let numbers: Option<Vec<f32>> = statement.words().take(3).map(|word| word.parse().ok()).collect();
     let vector = numbers.and_then(|numbers| numbers.try_into().ok());
@@ -149,9 +149,9 @@ fn coordinates(statement: &Statement<'_>) -> Result<[f32; 2], InputError> {
     in_range(statement, [u, (1.0 - v) as f32])
 }
 
-/// Refuses numbers that are not finite or too large.
+/// Refuses numbers that are not finite or whose absolute value exceeds [`COORDINATE_LIMIT`].
 fn in_range<const N: usize>(statement: &Statement<'_>, vector: [f32; N]) -> Result<[f32; N], InputError> {
-    // The comparison is false for NaN.
+    // NaN is refused, too, because comparisons with it are false.
     match vector.iter().all(|number| number.abs() <= COORDINATE_LIMIT) {
         true => Ok(vector),
         false => Err(statement.refused(None, format!("must be finite and within ±{COORDINATE_LIMIT:e}"))),

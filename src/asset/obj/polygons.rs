@@ -1,14 +1,14 @@
 //! Divides polygons into triangles: fans if they are convex, and ear clipping otherwise (Meisters, "Polygons Have Ears", 1975).
-//! Every corner stays, even on a straight line between its neighbours, so that polygons that share an edge still share all of
-//! its points.
+//! Every corner stays, even on a straight line between its neighbours. Polygons that share an edge thus still share all points
+//! of that edge.
 
 use glam::{DVec2, DVec3};
 
-/// Largest number of corners of a concave polygon: the time of ear clipping grows with the square of their number.
+/// Largest number of corners of a concave polygon. The time of ear clipping grows with the square of this number.
 pub(super) const MAX_CONCAVE: usize = 4096;
 
-/// Triangles of a polygon, each as three indices into its corners; there are two fewer triangles than corners. They have the
-/// polygon's orientation. `None` for a concave polygon with too many corners.
+/// Divides a polygon into triangles, each with three indices into `corners`. There are two fewer triangles than corners, and
+/// all have the polygon's orientation. `None` for a concave polygon with too many corners.
 pub(super) fn triangles(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     let count = corners.len();
     let fan = || (1..count.saturating_sub(1)).map(|at| [0, at, at + 1]).collect();
@@ -21,17 +21,18 @@ pub(super) fn triangles(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     if least > 0.0 {
         return Some(fan());
     }
-    // A fan of a convex polygon with straight angles has degenerate triangles. Ear clipping avoids them where it is cheap.
+    // Where a convex polygon has straight angles, a fan has degenerate triangles. Ear clipping avoids these, at a cost that is
+    // low up to MAX_CONCAVE corners.
     match count <= MAX_CONCAVE {
         true => Some(clipped(&flat)),
         false => (least == 0.0).then(fan),
     }
 }
 
-/// Projects the polygon onto the axis-aligned plane where it is largest, and makes it counter-clockwise.
+/// Projects the polygon onto the axis-aligned plane where its area is largest, and makes it counter-clockwise.
 fn projected(corners: &[DVec3]) -> Vec<DVec2> {
-    // Twice the area of the projection on each plane (Newell). Differences to the first corner avoid cancellation at large
-    // coordinates.
+    // Twice the area of the projection onto each plane (Newell). Differences to the first corner avoid cancellation when
+    // coordinates are large.
     let from = corners[0];
     let edges = corners.windows(2).map(|pair| (pair[0] - from).cross(pair[1] - from));
     let normal: DVec3 = edges.sum();
@@ -52,8 +53,8 @@ fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Cuts ears off: corners that turn left and whose triangle contains no other corner. If there is none, because of rounding or
-/// a self-intersecting polygon, any corner is cut off.
+/// Cuts ears off. An ear is a corner that turns left and whose triangle contains no other corner. If there is no ear, because
+/// of rounding or a self-intersecting polygon, any corner is cut off.
 fn clipped(flat: &[DVec2]) -> Vec<[usize; 3]> {
     let mut left: Vec<usize> = (0..flat.len()).collect();
     let mut triangles = Vec::with_capacity(flat.len() - 2);
@@ -82,7 +83,7 @@ fn is_ear(flat: &[DVec2], left: &[usize], ear: [usize; 3]) -> bool {
         return false;
     }
     let is_inside = |p: DVec2| area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
-    // Duplicates of the ear's corners, as at bridges to holes, do not count.
+    // Other corners at the same positions, as at bridges to holes, do not count.
     let is_corner = |p: DVec2| p == a || p == b || p == c;
     !left.iter().map(|corner| flat[*corner]).any(|p| is_inside(p) && !is_corner(p))
 }
@@ -106,7 +107,7 @@ mod tests {
     #[test]
     fn polygons_are_covered_once() {
         assert_eq!(covered(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]), 2.0);
-        // An arrowhead, listed from each of its corners. A triangle fan from three of them leaves the polygon.
+        // An arrowhead, listed from each of its corners in turn. A triangle fan from three of these corners leaves the polygon.
         let arrow = [[0.0, 0.0], [2.0, 3.0], [0.0, 2.0], [-2.0, 3.0]];
         for turn in 0..4 {
             let mut arrow = arrow;

@@ -7,14 +7,14 @@ use crate::InputError;
 /// A statement: one line, or several lines joined by backslashes at their ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Statement<'a> {
-    /// The number of its first line, counted from 1.
+    /// Number of the statement's first line, counted from 1.
     pub line: usize,
     /// Text of the statement, without surrounding space.
     text: Cow<'a, str>,
 }
 
 impl Statement<'_> {
-    /// The first word.
+    /// The first word of the statement.
     pub fn keyword(&self) -> &str {
         self.text.split(char::is_whitespace).next().unwrap_or_default()
     }
@@ -29,7 +29,7 @@ impl Statement<'_> {
         self.rest().split('#').take(1).flat_map(str::split_whitespace)
     }
 
-    /// An error at this line; `file` names a material library.
+    /// Returns an error at the statement's line. `file` names a material library; `None` stands for the OBJ file.
     pub fn refused(&self, file: Option<&str>, bound: impl Into<String>) -> InputError {
         let path = match file {
             Some(file) => format!("{file} line {}", self.line),
@@ -44,8 +44,8 @@ impl Statement<'_> {
     }
 }
 
-/// Statements of a file, without empty lines and comments. Bytes that are not UTF-8, as occur in names and comments, become
-/// replacement characters.
+/// Iterates over the statements of a file, without empty lines and comments. Bytes that are not UTF-8, as in some names and
+/// comments, become replacement characters.
 pub(super) struct Statements<'a> {
     left: &'a [u8],
     line: usize,
@@ -56,7 +56,7 @@ impl<'a> Statements<'a> {
         Self { left: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), line: 0 }
     }
 
-    /// Next line without its line ending, of any system.
+    /// Returns the next line without its line ending, of any operating system.
     fn next_line(&mut self) -> Option<&'a [u8]> {
         if self.left.is_empty() {
             return None;
@@ -81,7 +81,7 @@ impl<'a> Iterator for Statements<'a> {
         loop {
             let mut text = String::from_utf8_lossy(self.next_line()?);
             let line = self.line;
-            // A comment ends with its line, even if its last character is a backslash, as in a path.
+            // A comment never continues on the next line, even if it ends with a backslash, as a path may.
             while text.ends_with('\\') && !text.trim_start().starts_with('#') {
                 let Some(more) = self.next_line() else { break };
                 text = format!("{} {}", text.trim_end_matches('\\'), String::from_utf8_lossy(more)).into();

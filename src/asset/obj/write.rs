@@ -10,27 +10,27 @@ use crate::asset::images::png;
 use crate::asset::material::{Alpha, Material, Texture, Wrapping};
 use crate::asset::{Mesh, Model};
 
-/// Source of an object of the file: vertices, and triangles with indices from 0.
+/// Input for one object of the file: vertices, and triangles with vertex indices from 0.
 pub(crate) struct Object<'a, P, T> {
-    /// Name of the object. Without one, the triangles belong to the previous object. Whitespace becomes `_`, because a space
-    /// would end the name and a line break the statement.
+    /// Name of the object. Without a name, the triangles belong to the previous object. Whitespace becomes `_`, because a space
+    /// would end the name and a line break would end the statement.
     pub name: Option<&'a str>,
-    /// Name of the material, in a library that was named before.
+    /// Name of the material, in a library that the file already names.
     pub material: Option<&'a str>,
     /// Position of each vertex.
     pub positions: P,
-    /// Texture coordinates of each vertex, v down the image.
+    /// Texture coordinates of each vertex; v points down the image.
     pub uv: &'a [[f32; 2]],
-    /// The normal of each vertex, or none at all.
+    /// One normal per vertex, or an empty list.
     pub normals: &'a [[f32; 3]],
     /// Triangles, counter-clockwise seen from outside.
     pub triangles: T,
 }
 
-/// Writes objects into one file, one after the other. Numbers have all the digits that their type needs.
+/// Writes objects into one file, one after the other. Numbers are written with all digits that their type needs.
 pub(crate) struct ObjWriter<W> {
     out: W,
-    /// Number of the next vertex; the first in the file is 1.
+    /// Number of the next vertex in the file, counted from 1.
     next: u64,
 }
 
@@ -44,12 +44,12 @@ impl<W: Write> ObjWriter<W> {
         writeln!(self.out, "# {text}")
     }
 
-    /// Names a material library beside the file.
+    /// Writes a statement that names a material library beside the file.
     pub fn library(&mut self, name: &str) -> io::Result<()> {
         writeln!(self.out, "mtllib {name}")
     }
 
-    /// Writes an object with as many texture coordinates as positions.
+    /// Writes an object. The number of texture coordinates must equal the number of positions.
     pub fn object<N: Display>(
         &mut self,
         object: Object<'_, impl IntoIterator<Item = [N; 3]>, impl IntoIterator<Item = [u32; 3]>>,
@@ -83,8 +83,8 @@ impl<W: Write> ObjWriter<W> {
     }
 }
 
-/// A v coordinate that points down, printed as OBJ's v from the bottom. 1 − v gets enough digits for a reader that subtracts it
-/// from 1 in double precision.
+/// Prints v, which points down in memory, as 1 − v, because OBJ counts v from the bottom. The digits suffice for a reader that
+/// subtracts the number from 1 in double precision.
 struct Upwards(f32);
 
 impl Display for Upwards {
@@ -107,17 +107,18 @@ impl Model {
     /// Writes the model as Wavefront OBJ. Returns names and bytes of files: first `{name}.obj`, then, if meshes have materials,
     /// the library `{name}.mtl` and its images as PNG.
     ///
-    /// Each mesh becomes an object of its name, with positions, normals and texture coordinates unchanged, in the mesh's own
-    /// space. If the model has a skeleton, take it [at rest](crate::skinning::at_rest()) first. Colours, opacity, textures and
-    /// normal maps are written. OBJ cannot express skins, clips, morph targets, levels of detail, tangents, the sides from
-    /// which triangles are visible, filters, and the limit of [`Alpha::Mask`]; these are not written.
+    /// Each mesh becomes an object with the mesh's name. Positions, normals and texture coordinates stay unchanged, in the
+    /// mesh's own space. If the model has a skeleton, convert it with [`at_rest`](crate::skinning::at_rest()) first.
     ///
-    /// [`Model::from_obj`] reads equal numbers back: positions, normals and triangles to the bit. Texture coordinates are equal
-    /// to the bit if v is 0 or above 2⁻²⁹, and otherwise within 2⁻⁵³.
+    /// Colours, opacity, textures and normal maps are written. OBJ cannot express skins, clips, morph targets, levels of
+    /// detail, tangents, double-sided triangles, filters, and the limit of [`Alpha::Mask`]; these are not written.
+    ///
+    /// [`Model::from_obj`] reads the same numbers back. Positions, normals and triangles are equal to the bit. Texture
+    /// coordinates are equal to the bit if v is 0 or above 2⁻²⁹, and otherwise within 2⁻⁵³.
     ///
     /// # Errors
-    /// [`InputError`] for a name that is not a plain file name, for a mesh or a material that is not valid, and for images that
-    /// PNG cannot hold.
+    /// [`InputError`] for a name that is not a plain file name, for an invalid mesh or material, and for images that PNG cannot
+    /// hold.
     pub fn to_obj(&self, name: &str) -> Result<Vec<(String, Vec<u8>)>, InputError> {
         if name.is_empty()
             || name.contains(|c: char| c.is_whitespace() || c.is_control() || "/\\:#".contains(c))
@@ -163,15 +164,15 @@ fn object<'a>(
     }
 }
 
-/// A material library.
+/// A material library that is being written.
 #[derive(Default)]
 struct Library {
     text: String,
-    /// Name of each material that meshes use.
+    /// Name in the library of each material that meshes use, by the material's index.
     names: HashMap<usize, String>,
-    /// A name that no material has.
+    /// A name that no material of the library has.
     none: String,
-    /// Names and bytes of images.
+    /// File names and bytes of images.
     images: Vec<(String, Vec<u8>)>,
 }
 
@@ -206,15 +207,15 @@ impl Library {
         Ok(library)
     }
 
-    /// Material name of a mesh. A mesh without a material must end the previous material, so it names one that the library
-    /// lacks.
+    /// Material name to write for a mesh. A mesh without a material names one that the library lacks, to end the previous
+    /// material.
     fn material(&self, mesh: &Mesh) -> Option<&str> {
         let named = mesh.material.and_then(|material| self.names.get(&material));
         named.or_else(|| (!self.names.is_empty()).then_some(&self.none)).map(String::as_str)
     }
 }
 
-/// Statements of a material, with the file names of its texture and normal map.
+/// Text of a material's statements. `texture` and `normal` are the file names of its images.
 fn entry(name: &str, material: &Material, texture: Option<String>, normal: Option<String>) -> String {
     let [red, green, blue] = [0, 1, 2].map(|channel: usize| encoded(material.color[channel].into()));
     let mut text = format!("newmtl {name}\nKd {red} {green} {blue}\n");

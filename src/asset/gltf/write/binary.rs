@@ -1,19 +1,19 @@
-//! The buffer of a document, with its views and accessors.
+//! The binary buffer of a document, with its views and accessors.
 
 use serde_json::{Value, json};
 
-/// glTF's codes of component types.
+/// Component types of accessors, with the numbers that glTF defines.
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// Appends to a list of the document; returns the new index.
+/// Appends a value to a list of the document. Returns its index.
 pub(super) fn push(list: &mut Vec<Value>, value: Value) -> usize {
     list.push(value);
     list.len() - 1
 }
 
-/// The bytes of the buffer, with their views and accessors.
+/// The bytes of the buffer, with the views and accessors that describe them.
 #[derive(Default)]
 pub(super) struct Binary {
     pub bytes: Vec<u8>,
@@ -22,7 +22,7 @@ pub(super) struct Binary {
 }
 
 impl Binary {
-    /// Appends bytes as a new view, aligned to four bytes; returns its index.
+    /// Appends bytes as a new buffer view, aligned to four bytes. Returns the view's index.
     pub fn view(&mut self, bytes: impl IntoIterator<Item = u8>) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let start = self.bytes.len();
@@ -44,8 +44,8 @@ impl Binary {
         push(&mut self.accessors, accessor)
     }
 
-    /// Appends vectors of floats; returns the index of their accessor. `has_bounds` writes the smallest and largest components,
-    /// which glTF requires for positions and times.
+    /// Appends vectors of floats. Returns the index of their accessor. `has_bounds` also writes the smallest and largest
+    /// components, which glTF requires for positions and times.
     pub fn floats<const N: usize>(&mut self, vectors: &[[f32; N]], has_bounds: bool) -> usize {
         let bytes = vectors.as_flattened().iter().flat_map(|number| number.to_le_bytes());
         let kind = match N {
@@ -66,13 +66,13 @@ impl Binary {
         index
     }
 
-    /// Appends indices of triangles; returns the index of their accessor.
+    /// Appends vertex indices of triangles. Returns the index of their accessor.
     pub fn indices(&mut self, indices: &[u32]) -> usize {
         let bytes = indices.iter().flat_map(|index| index.to_le_bytes());
         self.accessor(bytes, "SCALAR", UNSIGNED_INT, indices.len())
     }
 
-    /// Appends vectors of four joint indices; returns the index of their accessor.
+    /// Appends one vector of four joint indices per vertex. Returns the index of their accessor.
     pub fn joints(&mut self, joints: &[[u16; 4]]) -> usize {
         let bytes = joints.as_flattened().iter().flat_map(|joint| joint.to_le_bytes());
         self.accessor(bytes, "VEC4", UNSIGNED_SHORT, joints.len())

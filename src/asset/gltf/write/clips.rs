@@ -6,8 +6,8 @@ use super::binary::Binary;
 use crate::asset::clip::{Clip, Interpolation, Keys, TransformPart};
 use crate::asset::{Mesh, Model};
 
-/// Animations of a model's clips, except clips without keys. `weighted` lists the nodes whose meshes have keys of weights, each
-/// with its first mesh.
+/// Writes the animations of a model's clips. Clips without keys are left out. `weighted` lists the nodes whose meshes have
+/// weight keys, each with the index of its first mesh.
 pub(super) fn clips(model: &Model, weighted: &[(usize, usize)], binary: &mut Binary) -> Vec<Value> {
     let mut written = Vec::new();
     for (index, clip) in model.clips.iter().enumerate() {
@@ -73,7 +73,7 @@ impl Animation<'_> {
     }
 }
 
-/// Divides each tangent by the seconds of its segment: clips store the product, glTF does not.
+/// Divides each tangent by the duration of its segment in seconds. Clips store tangents multiplied by it; glTF does not.
 fn unstretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
     for (key, pair) in times.windows(2).enumerate() {
         let seconds = pair[1] - pair[0];

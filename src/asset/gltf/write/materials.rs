@@ -8,22 +8,22 @@ use crate::asset::images::png;
 use crate::asset::material::{Alpha, Filter, Sampling, Texture, Wrapping};
 use crate::asset::{Material, Mesh, Model};
 
-/// Materials that meshes use, each once.
+/// The materials that meshes use, each written once, with their textures, samplers and images.
 #[derive(Default)]
 pub(super) struct Materials {
     pub materials: Vec<Value>,
     pub textures: Vec<Value>,
     pub samplers: Vec<Value>,
     pub images: Vec<Value>,
-    /// Materials written so far: the index in the model, and whether triangles are visible from inside.
+    /// Key of each material written so far: the index in the model, and whether triangles are visible from inside.
     known: Vec<(Option<usize>, bool)>,
     known_textures: Vec<Texture>,
     known_images: Vec<usize>,
 }
 
 impl Materials {
-    /// Index of a mesh's material in the document. A mesh without a material also needs one if its triangles are visible from
-    /// inside.
+    /// Returns the index of a mesh's material in the document. A double-sided mesh without a material gets an empty one,
+    /// because glTF states in the material whether triangles are double-sided.
     pub fn index(
         &mut self,
         model: &Model,
@@ -103,7 +103,7 @@ impl Materials {
     }
 }
 
-/// Sampler with OpenGL's enum values, which glTF uses.
+/// Writes a sampler with OpenGL's enum values, which glTF uses.
 fn sampler(sampling: &Sampling) -> Value {
     const NEAREST: u32 = 9728;
     const LINEAR: u32 = 9729;

@@ -10,18 +10,18 @@ use super::binary::Binary;
 use crate::asset::morph::MorphTarget;
 use crate::asset::{Influences, Mesh, Model};
 
-/// Consecutive meshes of a model that become primitives of one node.
+/// Consecutive meshes of a model that become the primitives of one node.
 pub(super) struct Group {
     /// The node's name.
     pub name: String,
-    /// Range of the model's meshes.
+    /// Range of these meshes in the model.
     pub meshes: Range<usize>,
-    /// Whether the node has a skin; otherwise it follows one bone.
+    /// Whether the node has a skin. Without a skin, the node follows one bone.
     pub is_skinned: bool,
 }
 
-/// Groups a model's meshes. Meshes of a group share a skin and are named as the import names primitives: a name followed by
-/// numbers from 0. Their morph weights must be equal.
+/// Groups a model's meshes into nodes. Meshes of a group share a skin and have equal morph weights. Their names follow the
+/// import's pattern for primitives: a common name, followed by numbers from 0.
 pub(super) fn groups(model: &Model) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for (at, mesh) in model.meshes.iter().enumerate() {
@@ -48,8 +48,8 @@ pub(super) fn groups(model: &Model) -> Vec<Group> {
     groups
 }
 
-/// Writes a primitive. `mirrors` marks the bones of its skin that mirror. Triangles there are reversed in the file, because the
-/// import reverses them back.
+/// Writes a primitive. `mirrors` says which bones of its skin mirror. Triangles that follow such bones are reversed in the
+/// file, because the import reverses them back.
 pub(super) fn primitive(
     mesh: &Mesh,
     is_skinned: bool,
@@ -78,7 +78,7 @@ pub(super) fn primitive(
     primitive
 }
 
-/// Adds sets of four joints and weights, enough for the vertex with the most influences.
+/// Adds as many sets of four joints and weights as the vertex with the most influences needs.
 fn add_influences(influences: &Influences, attributes: &mut Value, binary: &mut Binary) {
     for set in 0..influences.most().div_ceil(4).max(1) {
         let of = |vertex: usize, at: usize| influences.of(vertex).get(4 * set + at);
@@ -95,7 +95,7 @@ fn add_influences(influences: &Influences, attributes: &mut Value, binary: &mut 
     }
 }
 
-/// Morph target with a displacement for every vertex.
+/// Writes a morph target, with one displacement per vertex of the mesh.
 fn morph_target(target: &MorphTarget, vertices: usize, binary: &mut Binary) -> Value {
     let mut all = [(); 3].map(|()| vec![[0.0_f32; 3]; vertices]);
     for (vertex, delta) in target.vertices.iter().zip(&target.deltas) {

@@ -14,30 +14,30 @@ use binary::{Binary, push};
 use materials::Materials;
 use meshes::{Group, groups};
 
-/// Largest size of a GLB in bytes: its lengths have 32 bits.
+/// Largest size of a GLB in bytes, because the format stores lengths in 32 bits.
 const MAX_BYTES: usize = u32::MAX as usize;
 
-/// Largest number of joints of a skin: vertices store their indices in 16 bits.
+/// Largest number of joints of a skin, because vertices store joint indices in 16 bits.
 const MAX_JOINTS: usize = 1 << 16;
 
 impl Model {
     /// Writes the model as binary glTF (`.glb`): skeleton, skins, meshes with morph targets, clips, materials and images.
     ///
-    /// [`Model::from_gltf`] reads equal meshes, skins and materials back if the model was read from glTF or OBJ. All numbers
-    /// are equal to the bit: positions, normals, tangents, texture coordinates, triangles, influences up to the rounding of
-    /// weights that do not sum to 1, keys of clips. There are a few differences:
+    /// If the model was read from glTF or OBJ, [`Model::from_gltf`] reads equal meshes, skins and materials back. Positions,
+    /// normals, tangents, texture coordinates, triangles and keys of clips are equal to the bit. So are influences, up to the
+    /// rounding of weights that do not sum to 1. There are a few differences:
     ///
-    /// - Bones that neither skins, meshes nor clips need are not read again, and bones may have another order.
+    /// - Bones that skins, meshes and clips do not need are not read again, and bones may have another order.
     /// - Tangents of cubic splines, and rotations, may differ in the last bit.
     /// - A clip lasts until its last key. Clips without keys are left out.
-    /// - [`Alpha::Blended`](crate::asset::material::Alpha::Blended) is read back as [`Alpha::Dithered`](crate::asset::material::Alpha::Dithered), which is what `BLEND` becomes.
+    /// - [`Alpha::Blended`](crate::asset::material::Alpha::Blended) is written as `BLEND`, which the import reads as
+    ///   [`Alpha::Dithered`](crate::asset::material::Alpha::Dithered).
     /// - Levels of detail and lights are not written.
     ///
-    /// Images are PNG. Models have no metal and roughness; these are written as 0 and 1.
+    /// Images are PNG. Models have no metallic and roughness factors; these are written as 0 and 1.
     ///
     /// # Errors
-    /// [`InputError`] for a mesh, a skin or a material that is not valid, for images that PNG cannot hold, and for more than 4
-    /// GiB.
+    /// [`InputError`] for an invalid mesh, skin or material, for images that PNG cannot hold, and for more than 4 GiB.
     pub fn to_glb(&self) -> Result<Vec<u8>, InputError> {
         (0..self.skins.len()).try_for_each(|skin| self.check_skin(skin))?;
         (0..self.meshes.len()).try_for_each(|mesh| self.check_mesh(mesh))?;
@@ -54,7 +54,7 @@ impl Model {
     }
 }
 
-/// A document under construction. Nodes are the bones, in their order, followed by the nodes of meshes.
+/// A document under construction. Its first nodes are the bones, in their order; the nodes of meshes follow.
 #[derive(Default)]
 struct Document {
     binary: Binary,
@@ -63,14 +63,14 @@ struct Document {
     meshes: Vec<Value>,
     skins: Vec<Value>,
     materials: Materials,
-    /// Nodes whose meshes have animated weights, with their first mesh.
+    /// Nodes whose meshes have animated morph weights, each with the index of its first mesh in the model.
     weighted: Vec<(usize, usize)>,
-    /// Number of leading skins that are written; the others become matrices of nodes.
+    /// Number of leading skins that are written. Each of the other skins becomes the matrix of a node.
     shared: usize,
 }
 
 impl Document {
-    /// Adds a node below another, or as a root; returns the index.
+    /// Adds a node below the node `parent`, or as a root if that is `None`. Returns the new node's index.
     fn add_node(&mut self, parent: Option<u32>, node: Value) -> usize {
         let at = push(&mut self.nodes, node);
         let Some(parent) = parent else {
@@ -84,7 +84,7 @@ impl Document {
         at
     }
 
-    /// Adds a node for each group of meshes: at the root if it has a skin of the file, otherwise below its bone.
+    /// Adds a node for each group of meshes: a root if the group has a skin, otherwise a child of the bone that it follows.
     fn add_meshes(&mut self, model: &Model) -> Result<(), InputError> {
         let mirrored = mirrored(&model.skeleton);
         for Group { name, meshes, is_skinned } in groups(model) {
@@ -116,7 +116,7 @@ impl Document {
         Ok(())
     }
 
-    /// Adds the skins that meshes share.
+    /// Adds the skins that are written, with their inverse bind matrices.
     fn add_skins(&mut self, model: &Model) -> Result<(), InputError> {
         for (at, skin) in model.skins[..self.shared].iter().enumerate() {
             InputError::check_most(format!("skins[{at}].bones.len"), skin.bones.len(), MAX_JOINTS)?;
@@ -158,7 +158,7 @@ impl Document {
     }
 }
 
-/// Packs a document and its buffer into a GLB (glTF 2.0, chapter 4).
+/// Packs a document's JSON and its buffer into a GLB (glTF 2.0, chapter 4).
 fn container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, InputError> {
     json.resize(json.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
