@@ -56,7 +56,7 @@ impl Offscreen {
     /// targets of other formats, such as one with 4 samples per pixel.
     ///
     /// # Errors
-    /// [`InputError`] for a size of 0 or beyond the device's limit; [`GpuError`].
+    /// [`InputError`] for a size of 0 or beyond the device's limit; [`GpuError`] for failures of the device.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
         Self::with_format(gpu, size, TargetFormat::srgb())
     }
@@ -65,7 +65,7 @@ impl Offscreen {
     /// sample per pixel. Its values depend on no driver's rounding or encoding.
     ///
     /// # Errors
-    /// As [`Offscreen::new`].
+    /// Same as [`Offscreen::new`].
     pub fn linear(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
         Self::with_format(gpu, size, TargetFormat::new(LINEAR_FORMAT))
     }
@@ -79,11 +79,12 @@ impl Offscreen {
             && texel.saturating_mul(width * height) <= gpu.max_binding()
     }
 
-    /// A target of `size` pixels in a format without missing attachments, with depth as `Depth32Float`.
+    /// A target of `size` pixels. In `format`, no colour attachment may be missing, and depth must be `Depth32Float`.
     ///
     /// # Errors
-    /// [`InputError`] as [`TargetFormat::validate`], for missing colours, for other depth formats, for more than one
-    /// sample of a format that cannot be resolved, and for a size of 0 or beyond the device's limit; [`GpuError`].
+    /// [`InputError`] as [`TargetFormat::validate`], for missing colours, for depth formats other than `Depth32Float`, for more
+    /// than one sample of a format that cannot be resolved, and for a size of 0 or beyond the device's limit; [`GpuError`] for
+    /// failures of the device.
     pub fn with_format(gpu: &Gpu, size: [u32; 2], format: TargetFormat) -> Result<Self, Error> {
         format.validate()?;
         let depth = format.depth.map(|depth| depth.format);
@@ -130,7 +131,7 @@ impl Offscreen {
     /// depth to the far value.
     ///
     /// # Errors
-    /// Those of `draw`.
+    /// The errors that `draw` returns.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -171,12 +172,12 @@ impl Offscreen {
 
     /// Draws one frame of a scene through a camera, in full detail, over a linear `background`.
     ///
-    /// It compiles the pipelines, records a view and its colours, and waits for the device. A program that draws more
-    /// than one frame keeps a [`View`](crate::scene::View) and a [`Renderer`] instead.
+    /// The call compiles the pipelines, records a view and its colours, and waits for the device. A program that draws more than
+    /// one frame should keep a [`View`](crate::scene::View) and a [`Renderer`] instead.
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour, and as [`View::set`](crate::scene::View::set), [`Scene::record`] and
-    /// [`Renderer::draw`]; [`GpuError`].
+    /// [`InputError`] for a target without colour, and the errors of [`View::set`](crate::scene::View::set), [`Scene::record`]
+    /// and [`Renderer::draw`]; [`GpuError`] for failures of the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn draw(&self, scene: &mut Scene, camera: Camera, background: [f32; 3]) -> Result<(), Error> {
         let gpu = scene.gpu().clone();
@@ -226,7 +227,7 @@ impl Offscreen {
         })
     }
 
-    /// Reads the bytes of a colour attachment, texel by texel, row by row. `format` must be its format.
+    /// Reads the bytes of a colour attachment, texel by texel, row by row. `format` must be the attachment's format.
     ///
     /// # Errors
     /// [`InputError`] for an attachment that does not exist or has another format; [`GpuError`].

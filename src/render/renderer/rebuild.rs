@@ -30,8 +30,8 @@ impl Renderer {
     /// ([`Renderer::with_shading`]).
     ///
     /// # Errors
-    /// As [`Renderer::with_shading`] for the layout; [`InputError`] for a renderer without the caller's shading. The
-    /// renderer is unchanged then.
+    /// The errors of [`Renderer::with_shading`] for the layout; [`InputError`] for a renderer without the caller's shading. After
+    /// an error, the renderer is unchanged.
     pub fn rebuild_with_layout(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Result<(), Error> {
         let Some(shading) = &self.shading else {
             return Err(InputError::new("shading", "none", "must be there where a layout is given").into());

@@ -50,7 +50,7 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
 /// The object that a stage draws.
 pub const OBJECT: SceneObject = SceneObject { first_instance: 64, number: 1, ..NO_OBJECT };
 
-/// The model's first mesh. Its instances have their own vertices, in pages in reverse order.
+/// The model's first mesh. Its instances have their own skinned vertices, in 64-vertex pages in reverse order.
 pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) -> (MeshDrawable, u32) {
     let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
     let material = &model.materials[0];

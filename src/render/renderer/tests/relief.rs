@@ -55,7 +55,7 @@ fn material(plane: f32) -> ReliefMaterial {
     }
 }
 
-/// A square of relief as an object.
+/// A square with a relief, as an object.
 pub fn square(
     gpu: &Gpu,
     layouts: &SceneLayouts,
@@ -67,7 +67,7 @@ pub fn square(
     mesh_of(gpu, layouts, (maps, options), (&mesh, 1.0 / TILES), plane)
 }
 
-/// A mesh; a uv unit has a given length in model units.
+/// A mesh with a relief. One uv unit has the given length in model units.
 fn mesh_of(
     gpu: &Gpu,
     layouts: &SceneLayouts,

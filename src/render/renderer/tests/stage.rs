@@ -185,7 +185,7 @@ pub fn differing(a: &[[u8; 4]], b: &[[u8; 4]], levels: u8) -> usize {
     a.iter().zip(b).filter(|pair| far(*pair)).count()
 }
 
-/// Clear value of all [`FORMAT`] colours but the first, and its texels.
+/// Clear value of all [`FORMAT`] colours except the first, as a colour and as texels.
 const OTHER: (wgpu::Color, [u8; 4]) = (wgpu::Color { r: 1.0, g: 0.0, b: 1.0, a: 0.0 }, [255, 0, 255, 0]);
 
 /// The attachments of a target format.
