@@ -19,7 +19,7 @@
 //!
 //! `scene`, `render`, `scene_file` and `gpu` need the feature `gpu`, which is on by default.
 //!
-//! The repository has three more crates for users:
+//! Further crates of the repository:
 //!
 //! - `relievo-samples` has a creature with clips, and height maps with their colours.
 //! - `relievo-lab` compares every kernel with its reference, and its time with copying the same number of bytes. It also reports

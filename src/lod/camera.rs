@@ -16,7 +16,7 @@ pub enum Depth {
     Reversed,
 }
 
-/// Relative length of a plane's normal below which f32 rounding of the matrices decides its direction. The normal is
+/// Relative length of a plane's normal below which f32 rounding of the matrices decides the normal's direction. The normal is
 /// the difference of two rows of the matrix, and the length is relative to those rows.
 const LOST: f64 = 1e-4;
 

@@ -28,7 +28,7 @@ pub enum Criterion {
     Distance {
         /// The point of the instance to measure to.
         to: DistanceTo,
-        /// Distances in world units from which on levels 1, 2, … are drawn, ascending, above 0.
+        /// Smallest distances in world units at which levels 1, 2, … are drawn, ascending, above 0.
         from: Vec<f32>,
     },
     /// The instance's area on the screen (thesis A, section 6.2).
@@ -50,7 +50,7 @@ pub enum Criterion {
         to: DistanceTo,
         /// Distance in world units up to which the finest level is drawn, at least 0.
         near: f32,
-        /// Distance in world units from which on the coarsest level is drawn, above `near`.
+        /// Distance in world units beyond which the coarsest level is drawn, above `near`.
         far: f32,
     },
 }
@@ -71,7 +71,7 @@ pub enum DistanceTo {
 /// The shape of an instance whose area on the screen counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SizeOf {
-    /// The model's box ([`DistanceTo::NearestPoint`]). Its area changes as the instance turns.
+    /// The model's box ([`DistanceTo::NearestPoint`]). The area of the box changes as the instance turns.
     Box,
     /// The bounding sphere. Its area does not change as the instance turns.
     #[default]

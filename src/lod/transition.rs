@@ -31,7 +31,7 @@ pub enum Transition {
     /// The level changes at once.
     #[default]
     Hard,
-    /// By a geomorph: the vertices of a level move towards their partners in the next coarser level
+    /// The level changes by a geomorph: its vertices move towards their partners in the next coarser level
     /// ([`Mesh::partners`](crate::asset::Mesh::partners)).
     ///
     /// The vertices move further as the metric grows, in each view separately. When they reach their partners' positions, the

@@ -24,7 +24,7 @@ pub enum Attachments {
     /// Positions (`Rgba32Float`) and object and instance numbers (`Rg32Uint`), with one sample per pixel. For
     /// [`Layer::Measure`] and [`Layer::Depth`].
     Measure,
-    /// One colour in linear light, as in [`Attachments::Color`]. For [`Layer::Levels`] and [`Layer::Depth`].
+    /// One colour in linear light, in a float or normalized format. For [`Layer::Levels`] and [`Layer::Depth`].
     Levels,
     /// The colours that the caller's output writes. For [`Layer::Own`] and [`Layer::Depth`].
     Own(OutputProgram),

@@ -50,7 +50,7 @@ pub struct TargetFormat {
 /// A depth attachment and the direction of its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DepthFormat {
-    /// A format with depth. A stencil aspect is left unchanged.
+    /// A texture format with depth. A stencil aspect is left unchanged.
     pub format: wgpu::TextureFormat,
     /// Whether depth is reversed: 1 at the near plane, falling with distance. Clear the attachment to 0 if depth is reversed, and
     /// to 1 otherwise. The camera must have the same direction of depth.
@@ -215,7 +215,7 @@ impl TargetFormat {
         for (at, color) in self.color.iter().enumerate() {
             let Some(color) = color else { continue };
             let has = self.check_attachment(&format!("format.color[{at}].format"), color.format, device)?;
-            // Only the first colour is blended.
+            // The renderer blends only the first colour.
             let blends = at == 0 && color.blend.is_some();
             let blendable = wgpu::TextureFormatFeatureFlags::BLENDABLE;
             if blends && !has.contains(blendable) {

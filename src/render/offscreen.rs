@@ -62,7 +62,7 @@ impl Offscreen {
     }
 
     /// A target of `size` pixels in linear light: `Rgba32Float`, `Depth32Float` that grows with distance, and one
-    /// sample per pixel. Its values depend on no driver's rounding or encoding.
+    /// sample per pixel. The values do not depend on a driver's rounding or encoding.
     ///
     /// # Errors
     /// Same as [`Offscreen::new`].
@@ -70,7 +70,7 @@ impl Offscreen {
         Self::with_format(gpu, size, TargetFormat::new(LINEAR_FORMAT))
     }
 
-    /// Whether the device can hold a target of this size, and read its colours back through one buffer binding.
+    /// Whether the device can hold a target of this size and colour format, and read its colours back through one buffer binding.
     pub fn fits(gpu: &Gpu, size: [u32; 2], color: wgpu::TextureFormat) -> bool {
         let most = gpu.device().limits().max_texture_dimension_2d;
         let [width, height] = size.map(u64::from);
@@ -127,8 +127,8 @@ impl Offscreen {
         self.size
     }
 
-    /// Records a render pass that calls `draw`. It clears colour to `background` (linear), other attachments to 0, and
-    /// depth to the far value.
+    /// Records a render pass that calls `draw`. The pass first clears colour to `background` (linear), other attachments to 0,
+    /// and depth to the far value.
     ///
     /// # Errors
     /// The errors that `draw` returns.
@@ -195,16 +195,18 @@ impl Offscreen {
     /// Reads the colours back: sRGB, row by row. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`].
+    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`] for failures of the
+    /// device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
         gpu.block_on(self.read_async(gpu))
     }
 
-    /// As `Offscreen::read`, but completes once the device has finished; see [`Gpu::wait_async`].
+    /// Same as `Offscreen::read`, but completes once the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`].
+    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`] for failures of the
+    /// device.
     pub async fn read_async(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
         let pixels = self.read_color(gpu, 0, COLOR_FORMAT).await?;
         let reason = "the image that was read back has the wrong size".to_owned();
@@ -216,7 +218,7 @@ impl Offscreen {
     /// device.
     ///
     /// # Errors
-    /// [`InputError`] for a target of another format; [`GpuError`].
+    /// [`InputError`] for a target of another format; [`GpuError`] for failures of the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_linear(&self, gpu: &Gpu) -> Result<LinearImage, Error> {
         let bytes = gpu.block_on(self.read_color(gpu, 0, LINEAR_FORMAT))?;
@@ -230,7 +232,7 @@ impl Offscreen {
     /// Reads the bytes of a colour attachment, texel by texel, row by row. `format` must be the attachment's format.
     ///
     /// # Errors
-    /// [`InputError`] for an attachment that does not exist or has another format; [`GpuError`].
+    /// [`InputError`] for an attachment that does not exist or has another format; [`GpuError`] for failures of the device.
     pub async fn read_color(
         &self,
         gpu: &Gpu,
@@ -257,16 +259,16 @@ impl Offscreen {
     /// Reads the depths back, 0 to 1, row by row. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for more than one sample per pixel; [`GpuError`].
+    /// [`InputError`] for more than one sample per pixel; [`GpuError`] for failures of the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_depth(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
         gpu.block_on(self.read_depth_async(gpu))
     }
 
-    /// As `Offscreen::read_depth`, but completes once the device has finished; see [`Gpu::wait_async`].
+    /// Same as `Offscreen::read_depth`, but completes once the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// [`InputError`] for more than one sample per pixel; [`GpuError`].
+    /// [`InputError`] for more than one sample per pixel; [`GpuError`] for failures of the device.
     pub async fn read_depth_async(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
         if self.format.samples > 1 {
             let bound = "must be 1 where depth is read";

@@ -77,8 +77,9 @@ impl OutputProgram {
     /// resources.
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake, with the path `output:LINE:COLUMN`, both counted from 1; and for a name
-    /// that does not consist of lower-case letters and digits, beginning with a letter (`output.name`).
+    /// [`InputError`] for the first mistake in the text, with the path `output:LINE:COLUMN`, both counted from 1. [`InputError`]
+    /// with the path `output.name` for a name that has other characters than lower-case letters and digits, or does not begin
+    /// with a letter.
     pub fn new(name: &str, source: &str) -> Result<Self, InputError> {
         let is_letter = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit();
         if !name.starts_with(|letter: char| letter.is_ascii_lowercase()) || !name.chars().all(is_letter) {

@@ -69,7 +69,7 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer for targets of this format. It compiles nothing yet.
+    /// Creates a renderer for targets of this format. No pipeline is compiled yet.
     ///
     /// # Errors
     /// [`InputError`] that names the field, for a format that the library cannot draw into or the device does not support;
@@ -90,16 +90,16 @@ impl Renderer {
 
     /// The same renderer with the caller's shading in every colour pipeline. Nothing is compiled yet.
     ///
-    /// `source` is WGSL with a function `fn shade(surface: Surface, view: View) -> vec4<f32>`, which replaces the
-    /// crate's own. It returns a linear colour, and an alpha that the format's blending may use. It is called in
-    /// uniform control flow and must not discard.
+    /// `source` is WGSL with a function `fn shade(surface: Surface, view: View) -> vec4<f32>`, which replaces the crate's own
+    /// function. The function returns a linear colour, and an alpha that the format's blending may use. It is called in uniform
+    /// control flow and must not discard.
     ///
-    /// The text may have further functions, structs, constants and private variables; none of its names may begin with
-    /// `relievo_`. It may bind resources in bind group 3, visible to the fragment stage, with the layout `layout`. The
-    /// caller sets that group before [`Renderer::draw`]. Of WebGPU's default limits for the fragment stage, the crate's
-    /// pipelines use up to 4 storage buffers, 4 uniform buffers, 5 textures and 3 samplers.
+    /// The text may have further functions, structs, constants and private variables. None of its names may begin with
+    /// `relievo_`. The text may bind resources in bind group 3, visible to the fragment stage, with the layout `layout`. The
+    /// caller sets that group before [`Renderer::draw`]. In the fragment stage, the crate's own pipelines use up to 4 storage
+    /// buffers, 4 uniform buffers, 5 textures and 3 samplers; the caller may use the remainder of WebGPU's default limits.
     ///
-    /// These are the two structs and the crate's own function:
+    /// The two structs and the crate's own function are:
     ///
     /// ```wgsl
     #[doc = include_str!("../../wgsl/render/scene_shade.wgsl")]
@@ -152,7 +152,7 @@ impl Renderer {
     /// changed cameras need no new pipelines. Similar objects share pipelines, so a second call is usually quick.
     ///
     /// # Errors
-    /// [`InputError`] for a scene on another device; errors of the driver's compiler.
+    /// [`InputError`] for a scene on another device; errors of the driver's shader compiler.
     ///
     /// # Examples
     ///
@@ -172,7 +172,7 @@ impl Renderer {
         self.prepare_objects(scene.drawables(), scene.is_shadowed())
     }
 
-    /// As [`Renderer::prepare`], but completes once the device has reported its errors ([`Gpu::check_async`]).
+    /// Same as [`Renderer::prepare`], but completes once the device has reported its errors ([`Gpu::check_async`]).
     ///
     /// # Errors
     /// Same as [`Renderer::prepare`].
@@ -197,7 +197,7 @@ impl Renderer {
     /// # Errors
     /// [`InputError`] for:
     /// - a scene on another device, or a pass of another [`wgpu::Instance`];
-    /// - a view of another scene, or one that the last [`Scene::record`] left out;
+    /// - a view of another scene, or a view that the last [`Scene::record`] left out;
     /// - a view that was not recorded since objects were added, removed or grew, or since [`Scene::refresh`] or
     ///   [`Scene::set_error_budget`];
     /// - a view whose camera has another depth direction than the format;

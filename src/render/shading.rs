@@ -14,7 +14,7 @@ use crate::scene::specialization::Program;
 use crate::scene::wgsl::prefix::declared_names;
 use crate::{Error, InputError};
 
-/// The start of the function that the caller's text replaces. It is the last function of each shader.
+/// Start of the crate's function that the caller's text replaces. This function is the last one of each shader.
 const REPLACED: &str = "fn shade(";
 
 /// Index of the caller's bind group.
@@ -149,7 +149,7 @@ fn structure(name: &str) -> &'static str {
 struct Own<'a>(CallerText<'a>);
 
 impl Own<'_> {
-    /// Checks restrictions beyond valid WGSL.
+    /// Checks the restrictions of shading that go beyond valid WGSL.
     fn check(&self, module: &Module, has_layout: bool) -> Result<(), InputError> {
         let at = |span: Span, bound: &str| Err(self.0.refused([span].into_iter(), bound.to_owned()));
         if let Some((handle, _)) = module.overrides.iter().next() {

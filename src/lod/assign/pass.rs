@@ -24,7 +24,7 @@ impl AssignPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares a job for at most `instances` instances. [`AssignParams::instances`] is the count of a frame.
+    /// Prepares a job for at most `instances` instances. [`AssignParams::instances`] is the number in use.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for buffers that hold fewer instances; [`GpuError`] for failures of the device.

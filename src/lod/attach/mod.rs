@@ -19,9 +19,9 @@ pub use pass::{AttachBuffers, AttachPass};
 
 pub use crate::shared::lod::attach::{AttachParams, Attachment, KeptBone, NO_MESH};
 
-/// Parity bound between device and reference for an entry of an attached mesh's placement: a relative error. It is relative to
-/// the same entry computed from the absolute values of all three transforms.
-///
+/// Parity bound for an entry of an attached mesh's placement: the relative error of any device. It is relative to the entry that
+/// Parity bound for an entry of an attached mesh's placement on any device, as a relative error. The error is relative to the
+/// same entry, computed from the absolute values of all three transforms.
 /// Every operation on a device may round by ε = 2⁻²³. An entry of the placement's axes carries an error of 7ε. Each of the two
 /// products adds 4ε: multiplication (ε), two additions (2ε), and the addition of the translation (ε). The sum is 15ε. The host
 /// adds half of it again: 2.7e-6 in total, rounded up.

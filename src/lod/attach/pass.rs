@@ -5,7 +5,7 @@ use crate::Error;
 use crate::gpu::bindings::lod::attach as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 
-/// The buffers that attaching reads and writes.
+/// Buffers of the kernel that places attached meshes.
 #[doc(inline)]
 pub use bindings::Buffers as AttachBuffers;
 

@@ -7,7 +7,7 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::lod::BLOCK;
 use crate::shared::lod::budget::{BINS, FADES, FIND_BIN, FIND_PART, FINISH, PARTS};
 
-/// The buffers of a budget and of a view that shares it.
+/// Buffers of the budget kernel: those of the budget, and those of one view that shares the budget.
 #[doc(inline)]
 pub use bindings::Buffers as BudgetBuffers;
 

@@ -28,7 +28,7 @@ impl LodObject {
         object_flags_transition(self.flags) >= TRANSITION_DITHER
     }
 
-    /// Size of the object's lists in words.
+    /// Size of all lists of the object, in words.
     pub fn list_words(&self) -> u32 {
         self.lists() * self.instances
     }

@@ -11,11 +11,11 @@ use crate::shared::lod::list::{ListParams, PLACE, RUNS, SUM};
 pub struct ListBuffers<'a> {
     /// The objects. Their lists and draws must lie inside `lists` and `arguments`.
     pub objects: &'a Buffer<LodObject>,
-    /// For each block of 64 instances the index of its object, or [`NO_OBJECT`](crate::lod::NO_OBJECT).
+    /// Object index of each block of 64 instances, or [`NO_OBJECT`](crate::lod::NO_OBJECT).
     pub block_objects: &'a Buffer<u32>,
     /// Decision word per instance.
     pub decisions: &'a Buffer<u32>,
-    /// In: instance count per block and list, [`OBJECT_LISTS`] for each block. Overwritten.
+    /// In: instance count per block and list, [`OBJECT_LISTS`] counts for each block. The kernel overwrites them.
     pub counts: &'a Buffer<u32>,
     /// Out: list entries, from [`LodObject::list_begin`] on. An entry has an instance's index in its object, its level and its
     /// steps.
@@ -41,7 +41,7 @@ impl ListPass {
         Ok(Self { sum: kernel(SUM)?, place: kernel(PLACE)? })
     }
 
-    /// Prepares the lists of the first `object_count` objects and `blocks` blocks, in two dispatches.
+    /// Prepares a job that writes the lists of the first `object_count` objects and `blocks` blocks, in two dispatches.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for buffers with fewer objects or blocks; [`GpuError`] for failures of the device.

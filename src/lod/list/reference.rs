@@ -18,7 +18,7 @@ pub fn lists(object: &LodObject, decisions: &[u32]) -> [Vec<u32>; OBJECT_LISTS a
     lists
 }
 
-/// Exclusive prefix sums over the blocks of one object, per list, from the counts per block.
+/// For each block of one object and each list, the number of instances in the blocks before it. Input: counts per block and list.
 pub fn before_blocks(counts: &[u32]) -> Vec<u32> {
     let mut sums = [0; OBJECT_LISTS as usize];
     let mut before = Vec::with_capacity(counts.len());

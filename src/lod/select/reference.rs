@@ -85,7 +85,7 @@ pub fn select(
     Some(Selected { metric: (factor * least).min(MAX_METRIC), allowed, placement })
 }
 
-/// Position of a point in the picture, from the middle, in units of half the picture's height.
+/// Position of a point in the picture, relative to the middle, in units of half the picture's height.
 fn in_picture(rows: &[Vec4; 3], point: Vec3) -> Vec2 {
     let [x, y, w] = rows.map(|row| row.dot(point.extend(1.0)));
     if w > 0.0 { Vec2::new(x, y) / w } else { Vec2::splat(1e4) }

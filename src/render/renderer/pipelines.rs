@@ -70,7 +70,7 @@ impl PipelineKey {
             layer,
             program: self.part.program().clone(),
             vertex: format!("{PREFIX}{vertex}"),
-            // A pipeline without a fragment stage fits no pass with colours.
+            // A pass with colour attachments needs a pipeline with a fragment stage.
             fragment: (!is_plain_depth || !format.color.is_empty()).then_some(entry),
             constants: constants.into_iter().map(|(name, value)| (name, value.to_bits())).collect(),
             // Front faces run counter-clockwise, unless flipped.
@@ -83,7 +83,7 @@ impl PipelineKey {
     }
 }
 
-/// The part of a pipeline's source that differs between the pipelines of one renderer.
+/// The source of a pipeline: everything that differs between the pipelines of one renderer.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineSource {
     layer: Layer,
@@ -91,9 +91,9 @@ pub(super) struct PipelineSource {
     /// Entry points. The fragment stage is `None` if only depth is written and nothing is cut out.
     vertex: String,
     fragment: Option<String>,
-    /// Override constants, as the bits of their values.
+    /// Override constants of the shader: name, and bits of the `f64` value.
     constants: Vec<(&'static str, u64)>,
-    /// The culled faces.
+    /// The faces of triangles that are culled; `None` for both sides drawn.
     cull: Option<wgpu::Face>,
 }
 

@@ -6,7 +6,7 @@ use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
 use crate::InputError;
 use crate::scene::{Camera, Depth, Placement};
 
-/// Casters count up to this many map radii from the map's center towards the light.
+/// Limit of casters: distance from the map's center towards the light, in map radii.
 const REACH: f64 = 7.0;
 
 /// Fraction of the map's radius over which shadows fade (`SHADOW_FADE` of `wgsl/render/scene_shadow.wgsl`), plus some
@@ -31,7 +31,7 @@ pub(super) struct Frustum {
 }
 
 impl Frustum {
-    /// The view volume up to `range` units ahead of the camera, or to its far plane if that is nearer.
+    /// The view volume up to `range` units ahead of the camera, or up to the far plane if it is nearer.
     ///
     /// # Errors
     /// [`InputError`] for a range that ends before the near plane.

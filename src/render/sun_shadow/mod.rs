@@ -27,7 +27,7 @@ const LEAST_SIZE: u32 = 16;
 ///
 /// A texel covers 1/`size` of the map's width, about 1.8 `range` / `size` for a field of view of 0.8. Shadow edges are
 /// about two texels wide. A caster closer than three texels to a surface may not shade it. Shadows are stable while the
-/// camera moves and turns, because the map moves by whole texels. They shift when the light moves, and when the field
+/// camera moves and turns, because the map moves by whole texels. Shadow edges shift when the light moves, and when the field
 /// of view or `range` changes much. `docs/shadows.md` has the derivation.
 ///
 /// # Examples
@@ -69,7 +69,7 @@ impl SunShadow {
     /// the scene look up the shadow: prepare them afterwards.
     ///
     /// # Errors
-    /// [`InputError`] for a size below 16 or above the device's limit of textures; errors of the driver's compiler.
+    /// [`InputError`] for a size below 16 or above the device's limit of textures; errors of the driver's shader compiler.
     pub fn new(scene: &mut Scene, size: u32) -> Result<Self, Error> {
         let gpu = scene.gpu().clone();
         let most = gpu.device().limits().max_texture_dimension_2d;
@@ -87,7 +87,7 @@ impl SunShadow {
         Ok(Self { size, map, renderer, view })
     }
 
-    /// As [`SunShadow::new`], but completes once the device has reported its errors ([`Gpu::check_async`]).
+    /// Same as [`SunShadow::new`], but completes once the device has reported its errors ([`Gpu::check_async`]).
     ///
     /// # Errors
     /// Same as [`SunShadow::new`].
@@ -105,7 +105,7 @@ impl SunShadow {
         self.renderer.prepare(scene)
     }
 
-    /// As [`SunShadow::prepare`], but completes once the device has reported its errors.
+    /// Same as [`SunShadow::prepare`], but completes once the device has reported its errors.
     ///
     /// # Errors
     /// Same as [`Renderer::prepare`].
@@ -199,7 +199,7 @@ impl SunShadow {
         })
     }
 
-    /// Creates everything anew after the device was lost and the scene was rebuilt on another one
+    /// Creates the map and all pipelines anew after the device was lost and the scene was rebuilt on another one
     /// ([`Scene::rebuild_async`]). Rebuild the views too ([`View::rebuild`]), and fit the map to them again.
     ///
     /// # Errors

@@ -71,7 +71,7 @@ fn every_kind_of_pipeline_compiles_for_every_format() {
     for format in formats() {
         let renderer = Renderer::new(&gpu, &format).expect("a format");
         for layer in format.layers() {
-            // One format is enough for all methods. Only meshes are ever blended.
+            // Reliefs are tested with all methods in one format only. Only meshes can be blended.
             let parts = parts().into_iter().filter(|(method, part)| match layer {
                 Layer::Transparent => *part.program() == Program::Mesh,
                 _ => method.is_none_or(|method| format.samples == 4 || method == ReliefMethod::Quadtree),

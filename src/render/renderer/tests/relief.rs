@@ -44,7 +44,7 @@ impl Maps {
     }
 }
 
-/// The default light as a relief material.
+/// A relief material with the default light.
 fn material(plane: f32) -> ReliefMaterial {
     let light = Light::default();
     ReliefMaterial {
@@ -112,7 +112,7 @@ pub fn place(scale: Vec3) -> Mat4 {
     Mat4::from_rotation_x(-0.7) * Mat4::from_scale(scale)
 }
 
-/// The square in world space, scaled and placed as the instance.
+/// The square in world space, with the scale and the placement of the instance.
 fn placed(scale: f32) -> SurfaceMesh {
     let into = place(Vec3::ONE);
     let mut mesh = SurfaceMesh::square(TILES);

@@ -1,4 +1,4 @@
-//! Surface colour against a closed form: Lambert's law with normal maps, tints, coloured light, mirrored placements and
+//! Compares surface colours with a closed form: Lambert's law with normal maps, tints, coloured light, mirrored placements and
 //! back faces.
 
 use glam::{Mat4, Vec3, Vec4};
@@ -52,7 +52,7 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> MeshDrawable
     square_of(gpu, layouts, &mut model(), double_sided)
 }
 
-/// The same square in another model, with the second of its two materials.
+/// A square as in [`square`], but of another model, with the second of the model's two materials.
 fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided: bool) -> MeshDrawable {
     let corners = [[-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
     let vertex = |[x, y]: [f32; 2]| Vertex {
@@ -89,7 +89,7 @@ fn seen(from_behind: bool, light: Vec3) -> SceneView {
     view
 }
 
-/// The expected colour of the normal-mapped material. `frame` is its tangent space in world axes.
+/// The expected colour of the normal-mapped material. `frame` is the tangent space in world axes.
 fn expected(frame: [Vec3; 3], light: Vec3, tint: [f32; 3]) -> [u8; 4] {
     let texel = [0, 1, 2].map(|axis| f32::from(BUMP[axis]) / 255.0 * 2.0 - 1.0);
     // Green points up the image; v points down.
