@@ -1,12 +1,13 @@
-//! Counter-based random words: the CPU reference of `wgsl/hash.wgsl`; and hashes of data.
+//! Counter-based random words (the CPU reference of `wgsl/hash.wgsl`), and hashes of data.
 
 use sha2::{Digest, Sha256};
 
-/// Number of lanes that are drawn together, so that the compiler can vectorize the loops.
+/// Number of counters that are hashed together, so that the compiler can vectorize the loops.
 pub const LANES: usize = 8;
 
-/// Threefry-2x32 with 20 rounds (Salmon et al. 2011, `docs/sources.md`), for eight counters at once. Its constants are
-/// written again, and not taken from the shader, because known answers of others check both.
+/// Random words for [`LANES`] counters `(x, y)` at once: Threefry-2x32 with 20 rounds (Salmon et al. 2011, `docs/sources.md`).
+///
+/// The constants are written out here instead of taken from the shader, so that published known answers check both.
 #[inline(always)]
 pub fn threefry2x32(key: [u32; 2], x: [u32; LANES], y: [u32; LANES]) -> ([u32; LANES], [u32; LANES]) {
     const EVEN: [u32; 4] = [13, 15, 26, 6];
@@ -30,14 +31,14 @@ pub fn threefry2x32(key: [u32; 2], x: [u32; LANES], y: [u32; LANES]) -> ([u32; L
     (first, second)
 }
 
-/// The key for which a text stands: the first eight bytes of its SHA-256, as two little-endian words.
+/// Hash key of a text, for [`threefry2x32`]: the first eight bytes of the text's SHA-256, as two little-endian words.
 pub fn key_of(text: &str) -> [u32; 2] {
     let digest = Sha256::digest(text.as_bytes());
     let word = |at: usize| u32::from_le_bytes([digest[at], digest[at + 1], digest[at + 2], digest[at + 3]]);
     [word(0), word(4)]
 }
 
-/// The SHA-256 of words, each as four bytes, the lowest first: 64 hexadecimal digits.
+/// SHA-256 of `words` in little-endian byte order, as 64 hexadecimal digits.
 pub fn sha256(words: &[u32]) -> String {
     let mut hash = Sha256::new();
     words.iter().for_each(|word| hash.update(word.to_le_bytes()));
@@ -48,7 +49,7 @@ pub fn sha256(words: &[u32]) -> String {
 mod tests {
     use super::*;
 
-    /// Known answers of the Random123 distribution.
+    /// Compares with the known answers of the Random123 distribution.
     #[test]
     fn known_answers() {
         let cases = [
@@ -62,7 +63,7 @@ mod tests {
         }
     }
 
-    /// The answer of `printf abcd | sha256sum`, and that for nothing.
+    /// Compares with the output of `printf abcd | sha256sum`, and with the SHA-256 of an empty input.
     #[test]
     fn words_are_hashed_as_bytes() {
         let known = "88d4266fd4e6338d13b845fcf289579d209c897823b9217da3e161936f031589";

@@ -1,31 +1,35 @@
-//! relievo gives a renderer complexity that it cannot afford to store or compute in full. Every hot path is a WGSL
-//! compute or fragment pass, and every compute kernel is verified against a CPU reference on the current adapter.
+//! relievo lets a renderer show more detail than it could store or compute in full. Every hot path is a WGSL compute or
+//! fragment pass, and every compute kernel is verified against a CPU reference on the current adapter.
 //!
-//! # Two storeys
+//! # Two interfaces
 //!
-//! **The scene** is what an engine embeds: terrain, meshes, reliefs, characters and kinds of the caller's, seen through any number
-//! of views, drawn into the caller's render pass. Its interface is stable.
+//! **The scene** is the interface for engines: terrain, meshes, reliefs, characters, and kinds of objects that the caller
+//! defines. Any number of views can show a scene. It is drawn in the caller's render pass. This interface is stable.
 //!
-//! - `scene` has objects, instances, views and queries. Its documentation begins with the order of calls, and has a whole program.
+//! - `scene` has objects, instances, views and queries. Its documentation begins with the order of calls and a complete program.
 //! - `render` has the renderer, which draws in the caller's render pass, shadows of the sun, and an off-screen target.
 //! - `scene_file` reads scenes from JSON, builds them and draws their frames.
-//! - `gpu` opens a device or takes the caller's. It has typed buffers, prepared jobs and errors.
-//! - [`asset`] is plain data: models with their skeletons, skins, clips, meshes and materials, glTF and Wavefront OBJ in and out.
-//! - [`error`] names invalid input by path, value and bound.
+//! - `gpu` opens a device or takes the caller's device. It has typed buffers, prepared jobs and errors.
+//! - [`asset`] has plain data: models with skeletons, skins, clips, meshes and materials. It reads and writes glTF and Wavefront
+//!   OBJ.
+//! - [`error`] has the error types. An error for invalid input names the path, the value and the bound.
 //!
-//! **Operations** ([`ops`]) are for programs that bring their own buffers. Each is a GPU pass beside a CPU reference. They may
-//! change in a minor release.
+//! **Operations** ([`ops`]) are for programs that bring their own buffers. Each operation is a GPU pass with a CPU reference.
+//! Operations may change in a minor release.
 //!
-//! `scene`, `render`, `scene_file` and `gpu` need the feature `gpu`, which is on unless it is turned off.
+//! `scene`, `render`, `scene_file` and `gpu` need the feature `gpu`, which is on by default.
 //!
-//! Beside the library there are `relievo-samples` (a creature with clips, and height maps with their colours), `relievo-lab`
-//! (it compares every kernel with its reference, measures it against a copy of the same bytes, and says what level of detail
-//! costs and shows on the caller's own data), and the program `relievo-cli`.
+//! Further crates of the repository:
 //!
-//! The documentation cites two theses as **A** and **B**, by section, table or equation; `docs/sources.md` in the repository names
-//! them.
+//! - `relievo-samples` has a creature with clips, and height maps with their colours.
+//! - `relievo-lab` compares every kernel with its reference, and its time with copying the same number of bytes. It also reports
+//!   the cost and the visible error of levels of detail on the caller's own data.
+//! - `relievo-cli` is the program `relievo`.
 //!
-//! `wgpu`, [`glam`] and [`image`] are exported, so that the versions of an embedding program match.
+//! The documentation cites two theses as **A** and **B**, by section, table or equation. `docs/sources.md` in the repository has
+//! their titles.
+//!
+//! The crate re-exports `wgpu`, [`glam`] and [`image`], so that an embedding program can use the same versions.
 //!
 //! # Axes and units
 //!
@@ -39,10 +43,10 @@
 //! | textures | origin top-left; sRGB in images, linear light in shaders |
 //! | indices | `u32` |
 
-// Labels of features, which docs.rs shows.
+// Lets docs.rs label the items that need a feature.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-// The samples and the laboratory's pictures, which unit tests have as modules, name this crate as their dependency.
+// Unit tests include sources of other crates (`samples`, `picture`) as modules. These sources import this crate as `relievo`.
 #[cfg(test)]
 extern crate self as relievo;
 

@@ -1,24 +1,25 @@
-//! Operations: GPU passes over buffers of the caller's, each beside a CPU reference. The scene is built from them.
+//! Operations: GPU passes over the caller's buffers, each with a CPU reference. The scene is built from operations.
 //!
-//! **This storey may change in a minor release**; the scene and the modules beside it may not. The types of operations that the
-//! scene's functions take and return are re-exported by `scene` and `render`: use them from there. The parts of a terrain's configuration (`terrain::config`) are as stable
-//! as `scene::TerrainConfig`.
+//! **This interface may change in a minor release**; the scene and the modules beside it may not.
+//!
+//! Some functions of the scene take or return types of operations. `scene` and `render` re-export these types: import them from
+//! there. The parts of a terrain's configuration (`terrain::config`) are as stable as `scene::TerrainConfig`.
 //!
 //! | module | operations |
 //! |---|---|
 //! | [`mesh`] | simplification, and stored levels that refine each other |
 //! | [`terrain`] | heights from a seed, the same bits on every device; features, erosion, normals, colour maps |
 //! | [`surface`] | height maps, ray-height methods and the maps that accelerate them, tangent frames |
-//! | [`animation`] | sampling and concatenation of bones of crowds, layers, gates (animation level of detail), bounds, root motion |
+//! | [`animation`] | sampling and concatenation of bones of crowds, layers, gates (level of detail), bounds, root motion |
 //! | [`skinning`] | skinned and morphed meshes, their levels of detail, and the vertices that need work in a frame |
 //! | [`lod`] | culling, choice of levels, lists of instances and draws |
 //! | [`hash`](mod@hash) | counter-based random words |
 //!
 //! # The shape of an operation
 //!
-//! An operation is a folder: `mod.rs` has its parameters, `reference.rs` the CPU reference, which also serves machines
-//! without a GPU, and `pass.rs` the GPU pass. A *pass* compiles its pipelines once. Its `prepare` binds buffers and
-//! gives a *job*. `record` writes the job into the caller's command encoder, without submission, wait or allocation.
+//! An operation is a folder with three files. `mod.rs` has the parameters. `reference.rs` has the CPU reference, which also
+//! serves machines without a GPU. `pass.rs` has the GPU pass. A *pass* compiles its pipelines once. Its `prepare` binds buffers
+//! and returns a *job*. The job's `record` writes into the caller's command encoder, without submission, wait or allocation.
 //!
 //! ```
 //! # #[cfg(feature = "gpu")] {

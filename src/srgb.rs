@@ -1,6 +1,6 @@
-//! sRGB and linear light (IEC 61966-2-1).
+//! Conversion between sRGB and linear light (IEC 61966-2-1).
 
-/// A linear channel as an sRGB byte.
+/// Converts a linear channel to an sRGB byte. Values outside 0 to 1 are clamped.
 pub fn byte(linear: f32) -> u8 {
     let linear = linear.clamp(0.0, 1.0);
     let encoded =
@@ -8,7 +8,7 @@ pub fn byte(linear: f32) -> u8 {
     (encoded * 255.0 + 0.5) as u8
 }
 
-/// An sRGB byte as a linear channel.
+/// Converts an sRGB byte to a linear channel, 0 to 1.
 pub fn linear(byte: u8) -> f32 {
     let encoded = f32::from(byte) / 255.0;
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::powf((encoded + 0.055) / 1.055, 2.4) }
@@ -21,7 +21,7 @@ mod tests {
     #[test]
     fn bytes_come_back() {
         assert!((0..=255).all(|value| byte(linear(value)) == value));
-        // Half the light is 188, not 128, by the transfer curve of IEC 61966-2-1.
+        // By the transfer curve of IEC 61966-2-1, half the light encodes to 188, not 128.
         assert_eq!([0.0, 0.5, 1.0, -1.0, 2.0].map(byte), [0, 188, 255, 0, 255]);
         assert!((linear(128) - 0.215_86).abs() < 1e-5);
     }

@@ -1,14 +1,14 @@
-//! Failures of the device, each with advice.
+//! Errors of the GPU device. Each message includes advice.
 
-/// A failure of the device.
+/// A failure of the GPU device or its driver.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// No adapter matches the request.
     #[error("no GPU adapter {wanted}; {seen}")]
     NoAdapter {
-        /// The request.
+        /// How the search failed: no adapter was found, or none matches the requested name.
         wanted: String,
-        /// The existing adapters, and advice.
+        /// Names of the existing adapters, with advice for the user.
         seen: String,
     },
     /// The adapter provides no device with WebGPU's default limits.
@@ -74,7 +74,7 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// This error with the caller's advice, if it is [`GpuError::Limit`].
+    /// Replaces the advice of a [`GpuError::Limit`] by `remedy`. Other errors stay unchanged.
     pub(crate) fn with_remedy(self, remedy: &'static str) -> Self {
         match self {
             Self::Limit { pass, limit, needed, available, .. } => {

@@ -1,14 +1,14 @@
-//! JSON errors as path, value and bound.
+//! Converts JSON errors to an [`InputError`] with path, value and bound.
 
 use serde_json::Value;
 use serde_path_to_error::Segment;
 
 use super::InputError;
 
-/// The largest number of characters of a value in a message.
+/// Largest number of characters of a value in an error message.
 const SHOWN: usize = 60;
 
-/// A value, shortened for messages.
+/// A JSON value as text for an error message, cut after [`SHOWN`] characters.
 pub(crate) fn shown(value: &Value) -> String {
     let text = match value {
         Value::String(text) => text.clone(),
@@ -20,25 +20,25 @@ pub(crate) fn shown(value: &Value) -> String {
     }
 }
 
-/// The message of serde, without the position in the text.
+/// serde's message without the line and column at its end.
 pub(crate) fn message(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let end = format!(" at {}", place(error));
     message.strip_suffix(&end).unwrap_or(&message).to_owned()
 }
 
-/// The error for a text that cannot be parsed. Its position takes the place of the value.
+/// The error for a text that cannot be parsed. Its `value` is the line and column of the mistake.
 pub(crate) fn unreadable(path: &str, error: &serde_json::Error) -> InputError {
     InputError::new(path, place(error), message(error))
 }
 
-/// The position of an error in the text.
+/// Position of an error in the text: line and column.
 pub(crate) fn place(error: &serde_json::Error) -> String {
     format!("line {} column {}", error.line(), error.column())
 }
 
-/// The error for a value that its field does not accept, or for a field that is unknown or given twice. `None` if serde
-/// refused something else.
+/// The error for a value that its field does not accept, or for a field that is unknown or given twice. `None` for other errors
+/// of serde.
 pub(crate) fn refused_value(
     document: &Value,
     error: &serde_path_to_error::Error<serde_json::Error>,

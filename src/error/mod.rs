@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 pub use gpu::GpuError;
 pub(crate) use names::name_or_index;
 
-/// A value out of its bounds. The fields may be matched: `error.path == "zones[2].max"`.
+/// A value outside its bounds. Programs may compare the fields, for example `error.path == "zones[2].max"`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{path} = {value}: {bound}")]
 pub struct InputError {
@@ -21,17 +21,17 @@ pub struct InputError {
     pub path: String,
     /// The refused value.
     pub value: String,
-    /// The bound that the value must keep to.
+    /// The condition that the value must meet.
     pub bound: String,
 }
 
 impl InputError {
-    /// An error about the value at `path`.
+    /// An error for the value at `path`, which does not meet `bound`.
     pub fn new(path: impl Into<String>, value: impl Display, bound: impl Into<String>) -> Self {
         Self { path: path.into(), value: value.to_string(), bound: bound.into() }
     }
 
-    /// Refuses a list at `path` whose length is not `wanted`. `each` names the thing that needs one entry.
+    /// Refuses a list at `path` whose length is not `wanted`. `each` names the thing that needs one entry in the list.
     pub(crate) fn check_len(path: &str, len: usize, wanted: usize, each: &str) -> Result<(), Self> {
         Self::check_same(format!("{path}.len"), len, wanted, &format!("one {each}"))
     }
@@ -105,12 +105,12 @@ impl InputError {
         if is_good { Ok(()) } else { Err(Self::new(path, value, bound())) }
     }
 
-    /// This error with its path below `parent`.
+    /// Prepends `parent` and a dot to the error's path.
     pub(crate) fn below(self, parent: &str) -> Self {
         Self { path: format!("{parent}.{}", self.path), ..self }
     }
 
-    /// This error with its path in camel case, as JSON files write it: `patchSize` for the field `patch_size`.
+    /// Writes the error's path in camel case, as in JSON files: `patchSize` for the field `patch_size`.
     pub fn in_json(self) -> Self {
         let mut path = String::with_capacity(self.path.len());
         let mut letters = self.path.chars().peekable();
@@ -126,54 +126,54 @@ impl InputError {
     }
 }
 
-/// Any failure of the crate.
+/// Any error of the crate.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A value is out of its bounds.
+    /// A value is outside its bounds.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// A value in a file is out of its bounds.
+    /// A value in a file is outside its bounds.
     #[error("{}: {source}", path.display())]
     InputFile {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The mistake in the file.
+        /// The invalid value in the file.
         source: InputError,
     },
     /// A file cannot be read or understood.
     #[error("{}: {reason}", path.display())]
     File {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The reason.
+        /// The reason that the file cannot be read or understood.
         reason: String,
     },
     /// A file cannot be written.
     #[error("{}: {reason}", path.display())]
     Output {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The reason.
+        /// The reason that the file cannot be written.
         reason: String,
     },
-    /// The device failed, or none exists.
+    /// The GPU device failed, or no device exists.
     #[cfg(feature = "gpu")]
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
 
 impl Error {
-    /// [`Error::File`] for a file that cannot be read or understood.
+    /// Creates an [`Error::File`] for a file that cannot be read or understood.
     pub fn file(path: impl AsRef<Path>, reason: impl Display) -> Self {
         Self::File { path: path.as_ref().to_owned(), reason: reason.to_string() }
     }
 
-    /// [`Error::Output`] for a file that cannot be written.
+    /// Creates an [`Error::Output`] for a file that cannot be written.
     pub fn output(path: impl AsRef<Path>, reason: impl Display) -> Self {
         Self::Output { path: path.as_ref().to_owned(), reason: reason.to_string() }
     }
 
-    /// Whether the user's input is at fault, not the machine.
+    /// Whether the user's input is at fault, including files that cannot be read. False for failures of the machine.
     pub fn is_input(&self) -> bool {
         matches!(self, Self::Input(_) | Self::InputFile { .. } | Self::File { .. })
     }

@@ -1,10 +1,10 @@
-//! Lists of names in messages.
+//! Lists of names in error messages.
 
-/// The largest number of names in a message.
+/// Largest number of names that a message lists.
 const LISTED: usize = 20;
 
-/// The bound of a value that names one of several things or gives its index. `names` are in the order of indices;
-/// `what` is the things' plural.
+/// The bound of a value that must be one of `names` or an index into `names`. `what` is the plural of the named things, such as
+/// `bones`.
 pub(crate) fn name_or_index<'a>(what: &str, names: impl ExactSizeIterator<Item = &'a str>) -> String {
     let count = names.len();
     if count == 0 {

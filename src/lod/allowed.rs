@@ -1,5 +1,6 @@
-//! The displacement that views allow a surface: the one formula from pixels to levels, gates and influences. CPU
-//! reference of `wgsl/lod/allowed.wgsl`; `docs/pixel-bounds.md` derives it.
+//! Allowed displacement: the largest distance by which a view lets a surface be off. This one formula turns pixels into limits
+//! for levels of detail, bone gates and influences. CPU reference of `wgsl/lod/allowed.wgsl`. `docs/pixel-bounds.md` derives the
+//! formula.
 
 use glam::Vec3;
 
@@ -8,8 +9,8 @@ use crate::shared::lod::allowed::{ALLOWED_MARGIN, LEAST_SCALE, MAX_ALLOWED};
 use crate::shared::lod::view::POSITION_SLACK;
 
 impl LodCamera {
-    /// The allowed displacement of a sphere, in world units: any point in it may move that far, and the camera draws
-    /// none more than its `pixels` from its place. CPU reference of `camera_allows`.
+    /// Allowed displacement of a sphere, in world units. If every point inside moves by at most this distance, the camera draws
+    /// no point more than `self.pixels` pixels from its place. CPU reference of `camera_allows`.
     pub fn allows(&self, center: Vec3, radius: f32) -> f32 {
         if self.perspective == 0.0 {
             return ALLOWED_MARGIN * (self.pixels / self.focal);
@@ -32,8 +33,8 @@ impl LodCamera {
     }
 }
 
-/// The smallest displacement that any of the cameras allows a sphere, in units of a model whose largest scale is
-/// `scale`.
+/// Smallest displacement that any of the cameras allows a sphere, in model units. `scale` is the model's largest scale: it
+/// converts from world units.
 pub fn allowed_by(cameras: &[LodCamera], center: Vec3, radius: f32, scale: f32) -> f32 {
     let least = cameras.iter().map(|camera| camera.allows(center, radius)).fold(MAX_ALLOWED, f32::min);
     (least / scale.max(LEAST_SCALE)).min(MAX_ALLOWED)

@@ -1,4 +1,4 @@
-//! Cameras of views: frustum planes and allowed displacement from the caller's own matrices. `docs/pixel-bounds.md`
+//! Cameras of views: frustum planes and allowed displacement, computed from the caller's own matrices. `docs/pixel-bounds.md`
 //! derives the displacement.
 
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
@@ -16,17 +16,17 @@ pub enum Depth {
     Reversed,
 }
 
-/// Relative length of a plane's normal below which f32 rounding of the matrices decides its direction. The normal is
+/// Relative length of a plane's normal below which f32 rounding of the matrices decides the normal's direction. The normal is
 /// the difference of two rows of the matrix, and the length is relative to those rows.
 const LOST: f64 = 1e-4;
 
 /// A plane that excludes nothing.
 const NOWHERE: Vec4 = Vec4::W;
 
-/// The frustum planes of a matrix from some space to clip space with depth 0 to 1.
+/// The six frustum planes of a matrix from cell space to clip space, whose depth is 0 to 1.
 ///
-/// Each is a unit normal that points inwards and a distance, in the order left, right, bottom, top, depth 0, depth 1. A
-/// plane at infinity, or so far away that rounding decides its direction, is (0, 0, 0, 1), which excludes nothing.
+/// Each plane is a unit normal that points inwards, and a distance. The order is left, right, bottom, top, depth 0, depth 1. A
+/// plane at infinity, or so far away that rounding decides its direction, becomes (0, 0, 0, 1), which excludes nothing.
 pub fn planes(clip_from_cell: Mat4) -> [Vec4; 6] {
     let [x, y, z, w] = rows(&clip_from_cell.as_dmat4());
     let unit = |plane: DVec4, of: DVec4| {
@@ -49,17 +49,17 @@ struct Perspective {
 }
 
 impl LodCamera {
-    /// The camera of a view with these matrices: `view_from_cell` from a cell's space to the camera's, `clip_from_view`
-    /// from there to clip space with depth 0 to 1.
+    /// A camera from the matrices of a view. `view_from_cell` maps cell space to camera space. `clip_from_view` maps camera space
+    /// to clip space with depth 0 to 1.
     ///
-    /// Any perspective works (also infinite, off-axis, jittered, oblique), and any parallel projection. View matrices
-    /// may mirror and scale. `viewport` is width and height in pixels. `pixels` is the largest displacement on the screen.
+    /// Any perspective works (also infinite, off-axis, jittered, oblique), and any parallel projection. View matrices may mirror
+    /// and scale. `viewport` is width and height in pixels. `pixels` is the largest allowed displacement on the screen.
     ///
     /// # Errors
     /// [`InputError`] for:
     /// - `camera.view_from_cell` that is not finite, affine and invertible;
-    /// - `camera.clip_from_view` that is not finite, collapses the picture, or has no near plane ahead of the eye where
-    ///   `depth` says;
+    /// - `camera.clip_from_view` that is not finite or collapses the picture, or whose near plane, by `depth`, is not ahead of
+    ///   the eye;
     /// - `camera.viewport` without pixels;
     /// - `quality.pixels` that is negative or not finite.
     pub fn new(
@@ -85,13 +85,13 @@ impl LodCamera {
         Self::of(&clip_from_cell, viewport, depth, pixels).ok_or_else(|| refused(&clip_from_view))
     }
 
-    /// `None` if the matrix is not a camera's.
+    /// The camera of a matrix from cell space to clip space; `None` if the matrix is not valid for a camera.
     fn of(clip_from_cell: &DMat4, viewport: [u32; 2], depth: Depth, pixels: f32) -> Option<Self> {
         let reversed = depth == Depth::Reversed;
         let [x, y, z, w] = rows(clip_from_cell);
         let perspective = perspective([x, y, w])?;
         let ahead = perspective.as_ref().map(|perspective| perspective.ahead);
-        // Pixels per unit of length across. w grows by `along` for each unit ahead.
+        // Pixels per unit of length across the view direction. w grows by `along` for each unit ahead.
         let along = if ahead.is_some() { w.truncate().length() } else { w.w };
         let across = [(x, viewport[0]), (y, viewport[1])].map(|(row, size)| {
             let row = row.truncate() * (0.5 * f64::from(size) / along);
@@ -141,7 +141,7 @@ fn refused(clip_from_view: &Mat4) -> InputError {
     InputError::new("camera.clip_from_view", clip_from_view, bound)
 }
 
-/// Eye and direction. `Some(None)` for a parallel projection, `None` for a matrix that is neither.
+/// Eye and viewing direction of a perspective matrix. `Some(None)` for a parallel projection, `None` for any other matrix.
 fn perspective([x, y, w]: [DVec4; 3]) -> Option<Option<Perspective>> {
     let ahead = w.truncate();
     let sides = x.truncate().length() * y.truncate().length();
@@ -155,8 +155,8 @@ fn perspective([x, y, w]: [DVec4; 3]) -> Option<Option<Perspective>> {
     (is_picture && eye.is_finite()).then(|| Some(Perspective { eye, ahead: ahead.normalize() }))
 }
 
-/// The distance of the near plane; 0 if it is not parallel to the picture. `None` if it is behind the eye or beyond the
-/// far plane.
+/// Distance from the eye to the near plane; 0 if the plane is not parallel to the picture. `None` if the plane is behind the eye
+/// or beyond the far plane.
 fn near(perspective: &Perspective, front: DVec4, back: DVec4) -> Option<f64> {
     let Perspective { eye, ahead } = perspective;
     let normal = front.truncate();
@@ -184,9 +184,8 @@ fn up(number: f64) -> f32 {
     if f64::from(rounded) < number { rounded.next_up() } else { rounded }
 }
 
-/// Whether a matrix from some space to clip space mirrors: triangles that are counter-clockwise in that space, seen
-/// from outside, run clockwise on the screen. For a parallel view, depth must grow with distance; the sign of the
-/// determinant of all three axes decides.
+/// Whether a matrix to clip space mirrors: triangles that are counter-clockwise in its source space, seen from outside, run
+/// clockwise on the screen. In a parallel view, depth must grow with distance, because the determinant of all three axes decides.
 pub fn is_mirrored(clip: &Mat4) -> bool {
     // In f64, because the product of three small scales may underflow f32.
     let [right, up, depth, ahead] = [0, 1, 2, 3].map(|row| clip.row(row).truncate().as_dvec3());

@@ -16,22 +16,22 @@ use crate::shared::lod::object::object_flags_criterion;
 /// The criterion by which an object's levels of detail are chosen. In each view, an instance gets the coarsest level that
 /// the criterion permits.
 ///
-/// Lists name the places where levels 1, 2, … begin. Levels beyond the end of a list are not drawn.
+/// The lists in the variants name the thresholds at which levels 1, 2, … begin. Levels beyond the end of a list are not drawn.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Criterion {
-    /// The projected error: the coarsest level whose measured error the view allows
-    /// ([`Quality::pixels`](crate::scene::Quality::pixels)). Only this criterion keeps that promise.
+    /// The projected error: an instance gets the coarsest level whose measured error the view allows
+    /// ([`Quality::pixels`](crate::scene::Quality::pixels)). Only this criterion keeps the error within these pixels.
     #[default]
     Error,
     /// The distance from the eye (thesis A, section 6.1).
     Distance {
         /// The point of the instance to measure to.
         to: DistanceTo,
-        /// Distances in world units from which on levels 1, 2, … are drawn, ascending, above 0.
+        /// Smallest distances in world units at which levels 1, 2, … are drawn, ascending, above 0.
         from: Vec<f32>,
     },
-    /// The area on the screen (thesis A, section 6.2).
+    /// The instance's area on the screen (thesis A, section 6.2).
     Size {
         /// The shape whose area counts.
         of: SizeOf,
@@ -43,14 +43,14 @@ pub enum Criterion {
         /// Pixels per world unit below which levels 1, 2, … are drawn, descending, above 0.
         below: Vec<f32>,
     },
-    /// A triangle count that falls linearly with the distance (thesis A, section 6.1.1): the finest level's up to `near`,
-    /// the coarsest level's from `far` on. The level with the nearest count is drawn.
+    /// A target triangle count that falls linearly with the distance (thesis A, section 6.1.1). Up to `near`, it is the finest
+    /// level's count; from `far` on, the coarsest level's. The level with the nearest count is drawn.
     Ratio {
         /// The point of the instance to measure to.
         to: DistanceTo,
         /// Distance in world units up to which the finest level is drawn, at least 0.
         near: f32,
-        /// Distance in world units from which on the coarsest level is drawn, above `near`.
+        /// Distance in world units beyond which the coarsest level is drawn, above `near`.
         far: f32,
     },
 }
@@ -63,23 +63,23 @@ pub enum DistanceTo {
     Center,
     /// A point in the model's space.
     Point(Vec3),
-    /// The nearest point of the model's box. The box lies along the model's axes; that of a character is a cube around the
-    /// bounding sphere of its first clip.
+    /// The nearest point of the model's box, which lies along the model's axes. A character's box is a cube around the bounding
+    /// sphere of its first clip.
     NearestPoint,
 }
 
 /// The shape of an instance whose area on the screen counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SizeOf {
-    /// The model's box ([`DistanceTo::NearestPoint`]). Its area changes as the instance turns.
+    /// The model's box ([`DistanceTo::NearestPoint`]). The area of the box changes as the instance turns.
     Box,
-    /// The bounding sphere, whose area does not.
+    /// The bounding sphere. Its area does not change as the instance turns.
     #[default]
     Sphere,
 }
 
 impl Criterion {
-    /// Its code in an object's flags.
+    /// The criterion's code in an object's flags word.
     #[cfg(feature = "gpu")]
     pub(crate) fn code(&self) -> u32 {
         match self {
@@ -95,7 +95,7 @@ impl Criterion {
         }
     }
 
-    /// The point of the model that distances are measured to, if there is one.
+    /// The point of [`DistanceTo::Point`], in the model's space; `None` for other criteria.
     pub(crate) fn point(&self) -> Option<Vec3> {
         match self {
             Self::Distance { to: DistanceTo::Point(point), .. }
@@ -129,8 +129,10 @@ impl Criterion {
         }
     }
 
-    /// Factors of a threshold for a half width of `width`: where an instance returns to the finer level, and where it
-    /// takes the coarser one. Errors are not exceeded: their band lies on the coarser side.
+    /// Two factors of a threshold: at the first, an instance returns to the finer level; at the second, it takes the coarser one.
+    ///
+    /// `width` is half the width of the band between them, as a fraction. The band of [`Criterion::Error`] lies on the coarser
+    /// side, so that the allowed error is not exceeded.
     #[cfg(feature = "gpu")]
     pub(crate) fn band(&self, width: f32, is_hysteresis: bool) -> [f32; 2] {
         match self {
@@ -142,7 +144,8 @@ impl Criterion {
         }
     }
 
-    /// The metric of a value in the criterion's own unit: a distance, an area, a magnification. `None` for errors.
+    /// Converts a value in the criterion's own unit (distance, area or magnification) to the metric. `None` for
+    /// [`Criterion::Error`].
     pub(crate) fn metric_of(&self, value: f32) -> Option<f32> {
         match self {
             Self::Error => None,
@@ -155,8 +158,8 @@ impl Criterion {
     /// Checks the thresholds of an object with `levels` levels.
     ///
     /// # Errors
-    /// [`InputError`] for more thresholds than levels after the first, for one that is not finite or not above 0, and for
-    /// a list in the wrong order.
+    /// [`InputError`] for more thresholds than levels after level 0, for a threshold that is not finite or not above 0, and for a
+    /// list in the wrong order.
     pub fn validate(&self, levels: usize) -> Result<(), InputError> {
         match self {
             Self::Error => Ok(()),
@@ -216,7 +219,7 @@ fn check_list(path: &str, list: &[f32], levels: usize, order: Order) -> Result<(
     Ok(())
 }
 
-/// An instance's place in a view, relative to the corner of the view's cell.
+/// Placement of an instance in a view. Positions are relative to the corner of the view's cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Placed {
     /// The columns of the model's linear transform.
@@ -225,7 +228,7 @@ pub struct Placed {
     pub at: Vec3,
     /// Middle of the bounding sphere.
     pub center: Vec3,
-    /// Its radius.
+    /// Radius of the bounding sphere, in world units.
     pub radius: f32,
 }
 
@@ -235,7 +238,7 @@ impl Placed {
     }
 }
 
-/// The metric of an instance in a camera. `allowed` is the allowed displacement in the model's units.
+/// Metric of an instance for one camera, by the object's criterion. `allowed` is the allowed displacement in model units.
 pub fn metric(object: &LodObject, camera: &LodCamera, placed: &Placed, allowed: f32) -> f32 {
     match object_flags_criterion(object.flags) {
         CRITERION_DISTANCE => camera.perspective * placed.center.distance(camera.eye),

@@ -39,7 +39,7 @@ impl SceneInstance {
         [self.scale[0] * x, self.scale[1] * y, self.scale[2] * z]
     }
 
-    /// Whether the scale mirrors.
+    /// Whether the scale mirrors: an odd number of its factors is negative.
     pub fn is_mirrored(&self) -> bool {
         self.scale.iter().filter(|factor| **factor < 0.0).count() % 2 == 1
     }

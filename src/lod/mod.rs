@@ -1,24 +1,24 @@
 //! Level of detail and culling of a scene's instances.
 //!
-//! - [`select`]: which instances a view sees, and their metric.
-//! - [`decide`]: their levels of detail, from metrics, hysteresis and transitions.
-//! - [`budget`]: by how much the levels are coarsened, so that the triangles fit.
-//! - [`list`]: the lists from which the view draws them.
-//! - [`sorted`]: draws of single instances.
-//! - [`assign`]: the detail of gates and skinning, from the displacement that the views of a frame allow.
+//! - [`select`]: which instances a view sees, and the metric of each.
+//! - [`decide`]: levels of detail of these instances, from metrics, hysteresis and transitions.
+//! - [`budget`]: the factor that coarsens the levels, so that the triangles fit a limit.
+//! - [`list`]: the lists of instances that the view draws.
+//! - [`sorted`]: draws of single instances, in an order that the host chooses.
+//! - [`assign`]: the detail of bone gates and skinning, from the displacement that the views of a frame allow.
 //! - [`attach`]: placements of meshes that follow bones, once the bones are posed.
 //!
-//! A scene (feature `gpu`) runs these kernels for you. They are public for programs that keep their own instances and
-//! draws. In a frame, record [`select`], [`decide`] and [`list`] for each view; the first view is marked as
-//! such ([`SelectView::is_first`](SelectView)). Then record [`assign`] for each character, and draw from the lists.
+//! A scene (feature `gpu`) runs these kernels for you. They are public for programs that keep their own instances and draws. In a
+//! frame, record [`select`], [`decide`] and [`list`] for each view, and set [`SelectView::is_first`](SelectView) in the first
+//! view. Then record [`assign`] for each character, and draw from the lists.
 //!
-//! Instances of all objects lie in one buffer of [`SceneInstance`]; those of an object take whole blocks of [`BLOCK`].
-//! A view ([`SelectView`]) culls them by its planes ([`planes`]). Up to [`VIEW_CAMERAS`] cameras ([`LodCamera`]) limit
-//! the displacement: usually the view's own camera; for a shadow map, those of the views that show the shadows.
+//! Instances of all objects lie in one buffer of [`SceneInstance`]. Each object takes whole blocks of [`BLOCK`] instances. A view
+//! ([`SelectView`]) culls instances by its planes ([`planes`]). Up to [`VIEW_CAMERAS`] cameras ([`LodCamera`]) limit the
+//! displacement. Usually this is the view's own camera. For a shadow map, it is the cameras of the views that show the shadows.
 //!
-//! An instance's position is a cell of [`CELL_SIZE`] world units an edge, and an offset in world units. Planes and
-//! cameras are relative to the corner of the view's cell. Errors of levels are in the model's units. So are allowed
-//! displacements, once divided by an instance's largest scale.
+//! An instance's position is a cell, a cube of [`CELL_SIZE`] world units an edge, and an offset in world units. Planes and
+//! cameras are relative to the corner of the view's cell. Errors of levels are in model units. An allowed displacement is divided
+//! by the instance's largest scale, which converts it to model units too.
 
 #[doc(hidden)]
 pub mod allowed;

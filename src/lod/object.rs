@@ -1,11 +1,11 @@
-//! Valid ranges of a scene's objects.
+//! Checks of a scene's objects.
 
 use super::{BLOCK, LodObject, OBJECT_LEVELS};
 use crate::InputError;
 use crate::shared::lod::object::{NO_RANK, object_flags_transition};
 use crate::shared::lod::transition::TRANSITION_GEOMORPH;
 
-/// Checks the number of an object's levels and their thresholds. With `begins_at_0`, that of level 0 must be 0.
+/// Checks the number of an object's levels and their thresholds. With `begins_at_0`, the threshold of level 0 must be 0.
 fn check_levels(path: &str, object: &LodObject, begins_at_0: bool) -> Result<(), InputError> {
     let levels = object.levels;
     if !(1..=OBJECT_LEVELS).contains(&levels) {
@@ -26,7 +26,7 @@ fn check_levels(path: &str, object: &LodObject, begins_at_0: bool) -> Result<(),
     Ok(())
 }
 
-/// Checks a fraction.
+/// Checks that a fraction is in 0 to 1.
 pub(super) fn check_fraction(path: String, fraction: f32) -> Result<(), InputError> {
     if (0.0..=1.0).contains(&fraction) {
         Ok(())
@@ -62,12 +62,15 @@ impl LodObject {
         triangles: [[0; 4]; 2],
     };
 
-    /// Checks the ranges. `path` is the object's path in error messages.
+    /// Checks that all fields are in their ranges. `path` is the object's path in error messages.
     ///
     /// # Errors
-    /// [`InputError`] for instances that do not take whole blocks, for a number of levels beyond [`OBJECT_LEVELS`], for
-    /// thresholds that are not finite or descend, for a scale of the metric that is not above 0, and for factors of which
-    /// the finer one is not in 0 to 1, or the coarser one below it.
+    /// [`InputError`] that names the field:
+    /// - `first` or `instances` that is not a multiple of [`BLOCK`];
+    /// - `levels` outside of 1 to [`OBJECT_LEVELS`];
+    /// - thresholds that are not finite or descend;
+    /// - `metric_scale` that is not above 0;
+    /// - `finer` outside of 0 to 1, or `coarser` below `finer`.
     pub fn validate(&self, path: &str) -> Result<(), InputError> {
         for (field, value) in [("first", self.first), ("instances", self.instances)] {
             if !value.is_multiple_of(BLOCK) {

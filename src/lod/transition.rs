@@ -21,50 +21,52 @@ const ON_THE_WAY: f32 = 1.2;
 
 /// How an object's instances change from one level of detail to the next.
 ///
-/// Fades draw an instance twice while it changes. All but [`Transition::Dither`] blend: their blended level is drawn in
-/// [`Layer::Transparent`](crate::render::Layer::Transparent), after everything opaque. Layers other than colour and depth show
-/// the level with the larger weight alone; a dither shows its pattern in every layer. Parts with blended materials change at
+/// A fade draws an instance twice while its level changes. [`Transition::Dither`] shows its pattern in every layer. All other
+/// fades blend: the blended level is drawn in [`Layer::Transparent`](crate::render::Layer::Transparent), after everything opaque.
+/// Layers other than colour and depth then show only the level with the larger weight. Parts with blended materials change at
 /// once.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Transition {
-    /// At once.
+    /// The level changes at once.
     #[default]
     Hard,
-    /// By a geomorph: the vertices of a level move towards their partners in the next coarser level
+    /// The level changes by a geomorph: its vertices move towards their partners in the next coarser level
     /// ([`Mesh::partners`](crate::asset::Mesh::partners)).
     ///
-    /// The larger the metric, the further they move, in each view on its own. At the partners' positions the picture
-    /// equals that of the coarser level, so the level change itself is invisible.
+    /// The vertices move further as the metric grows, in each view separately. When they reach their partners' positions, the
+    /// picture equals the coarser level, so the level change itself is invisible.
     ///
-    /// With [`Criterion::Error`], a level begins to move when 1.2 times the next level's error is allowed. It arrives when
-    /// 1.2 times the error of the level after that is allowed. The factor covers the surface between two levels, whose
-    /// error may exceed that of both (figures in `docs/pixel-bounds.md`). The drawn level is therefore one to two levels
+    /// With [`Criterion::Error`], a level begins to move when 1.2 times the next level's error is allowed. The move ends when 1.2
+    /// times the error of the level after that is allowed. The factor 1.2 allows for the surface between two levels, whose error
+    /// may exceed the errors of both levels (figures in `docs/pixel-bounds.md`). The drawn level is therefore one to two levels
     /// finer than with [`Transition::Hard`]. This costs about 1.7 times the triangles, and two loads per vertex.
     ///
-    /// Vertex motion is part of velocity ([`Layer::Velocity`](crate::render::Layer::Velocity)). If the level of the
-    /// last frame was finer, a vertex was at its own place; if it was coarser, at the place of the vertex that stood in
-    /// for it. Where the last level is unknown, the current one counts: for an instance that the view did not show in
-    /// the last frame, and for all instances in the first frame after objects were added, removed or grew. An instance
-    /// that took the slot of one removed since the last frame counts with the removed instance's level.
+    /// Vertex motion is part of velocity ([`Layer::Velocity`](crate::render::Layer::Velocity)). If the level of the last frame
+    /// was finer, a vertex was at its own position then. If that level was coarser, the vertex was at the position of the vertex
+    /// that replaced it.
+    ///
+    /// Where the last level is unknown, the current level counts as the last one. This applies to an instance that the view did
+    /// not show in the last frame, and to all instances in the first frame after objects were added, removed or grew. If an
+    /// instance took the slot of an instance that was removed since the last frame, the removed instance's level counts.
     Geomorph,
-    /// Both levels, each in its own pixels of an ordered pattern that stands still. Together they cover every pixel.
+    /// Both levels are drawn, each in its own pixels of an ordered pattern that stands still. Together they cover every pixel.
     Dither(Pace),
-    /// Both levels blended, with weights λ and 1 − λ (thesis A, section 7.3.1). Opaque surfaces behind them show through.
+    /// Both levels are blended, with weights λ and 1 − λ (thesis A, section 7.3.1). Opaque surfaces behind them show through.
     CrossFade(Pace),
-    /// The level opaque; the next one is blended over it with weight 1 − λ and without writing depth (section 7.3.2).
-    /// The level disappears at once in the end.
+    /// The level is opaque. The next level is blended over it with weight 1 − λ, without writing depth (thesis A, section 7.3.2).
+    /// At the end of the fade, the old level disappears at once.
     FadeIn(Pace),
-    /// The level opaque while the next one fades in over it, then the next one opaque while the level fades out
-    /// (section 7.3.3). Nothing behind shows through.
+    /// First the level is opaque while the next one fades in over it. Then the next one is opaque while the old level fades out
+    /// (thesis A, section 7.3.3). Nothing behind shows through.
     TwoPhase(Pace),
-    /// Levels change at once, and instances fade out to nothing (section 7.4). Opaque surfaces behind them show through. The
-    /// numbers have the unit of the object's criterion: distance, fraction of the viewport, or pixels per world unit.
-    /// [`Criterion::Error`] has none.
+    /// Levels change at once, and distant instances fade out to nothing (thesis A, section 7.4). Opaque surfaces behind them show
+    /// through. The two values have the unit of the object's criterion: distance, fraction of the viewport, or pixels per world
+    /// unit. Not available with [`Criterion::Error`].
     Alpha {
-        /// Where instances begin to fade.
+        /// The value at which instances begin to fade.
         opaque: f32,
-        /// Where they have vanished, further away.
+        /// The value at which instances have vanished, further away than `opaque`.
         gone: f32,
     },
 }
@@ -72,25 +74,24 @@ pub enum Transition {
 /// How fast a fade runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pace {
-    /// With the metric: in a band around each threshold, of so large a fraction of it to either side, above 0 and below 1.
-    /// The band of [`Criterion::Error`] begins at the threshold and is twice as wide, so that no level is drawn before it
-    /// is allowed.
+    /// The fade depends on the metric: it takes place in a band around each threshold. The number is the band's width to either
+    /// side as a fraction of the threshold, above 0 and below 1. With [`Criterion::Error`], the band begins at the threshold and
+    /// is twice as wide, so that no level is drawn before it is allowed.
     Band(f32),
-    /// In time: so many seconds from the moment when another level is right, above 0. Until then the old level is drawn
-    /// beyond what the criterion permits.
+    /// The fade takes this many seconds, above 0. It starts when the criterion asks for another level. Until it ends, the old
+    /// level is still drawn, beyond what the criterion permits.
     Seconds(f32),
 }
 
 impl Default for Pace {
-    /// A band of a tenth to either side, as thesis A's [90, 110].
+    /// A band of a tenth of the threshold to either side, like thesis A's band [90, 110].
     fn default() -> Self {
         Self::Band(0.1)
     }
 }
 
 impl Transition {
-    /// Transitions without numbers of their own, with their names in scene files and on the command line. Fades have the
-    /// default pace.
+    /// Transitions that need no numbers, with their names in scene files and on the command line. Fades have the default pace.
     pub const NAMES: [(&'static str, Self); 6] = [
         ("hard", Self::Hard),
         ("geomorph", Self::Geomorph),
@@ -100,7 +101,7 @@ impl Transition {
         ("two_phase", Self::TwoPhase(Pace::Band(0.1))),
     ];
 
-    /// Its code in an object's flags.
+    /// The transition's code in an object's flags word.
     #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
@@ -114,7 +115,7 @@ impl Transition {
         }
     }
 
-    /// The pace of a fade between levels.
+    /// Pace of a fade between levels; `None` for other transitions.
     pub fn pace(self) -> Option<Pace> {
         match self {
             Self::Dither(pace) | Self::CrossFade(pace) | Self::FadeIn(pace) | Self::TwoPhase(pace) => {
@@ -124,13 +125,13 @@ impl Transition {
         }
     }
 
-    /// Whether instances may fade, which takes lists of their own.
+    /// Whether instances may fade. Fading instances need lists of their own.
     #[cfg(feature = "gpu")]
     pub(crate) fn fades(self) -> bool {
         !matches!(self, Self::Hard | Self::Geomorph)
     }
 
-    /// Checks the numbers, for an object with this criterion.
+    /// Checks the numbers of the transition, for an object with this criterion.
     ///
     /// # Errors
     /// [`InputError`] for a pace outside its range, and for [`Transition::Alpha`] with [`Criterion::Error`] or with
@@ -160,12 +161,11 @@ impl Transition {
         Err(InputError::new("transition.gone", gone, format!("must be further away than opaque, {opaque}")))
     }
 
-    /// Threshold per level: the smallest metric at which the level is drawn. Input: thresholds of the levels without a
+    /// Threshold per level: the smallest metric at which the level is drawn. `thresholds` are those of the levels without a
     /// transition, ascending from 0.
     ///
-    /// With a geomorph, the threshold is where the level begins to move: [`ON_THE_WAY`] times the next level's error.
-    /// Level 0 is drawn below its threshold too. For the last level, twice its own error takes the place of the next
-    /// level's.
+    /// With a geomorph, a level begins to move at its threshold: [`ON_THE_WAY`] times the next level's error. Level 0 is drawn
+    /// below its threshold too. The last level has no next level; twice its own error is used instead.
     #[cfg(feature = "gpu")]
     pub(crate) fn begins(self, thresholds: &[f32]) -> Vec<f32> {
         match (self, thresholds.last()) {
@@ -178,8 +178,7 @@ impl Transition {
     }
 }
 
-/// The smallest metric at which a level is drawn, for an instance whose level in the last frame was `last`, or
-/// [`NO_LEVEL`].
+/// Smallest metric at which a level is drawn. `last` is the instance's level in the last frame, or [`NO_LEVEL`].
 pub fn threshold_of(object: &LodObject, level: u32, last: u32) -> f32 {
     let factor = match last {
         NO_LEVEL => 1.0,
@@ -189,7 +188,7 @@ pub fn threshold_of(object: &LodObject, level: u32, last: u32) -> f32 {
     object.thresholds.as_flattened()[level as usize] * factor
 }
 
-/// The coarsest level whose threshold is at most `metric`.
+/// Coarsest level whose threshold is at most `metric`. `last` is the instance's level in the last frame, or [`NO_LEVEL`].
 pub fn level_within(object: &LodObject, metric: f32, last: u32) -> u32 {
     let fits = |level: &u32| threshold_of(object, *level, last) <= metric;
     (1..object.levels.min(OBJECT_LEVELS)).rev().find(fits).unwrap_or(0)
@@ -199,7 +198,8 @@ fn steps_between(metric: f32, begin: f32, end: f32, most: u32) -> u32 {
     (most as f32 * ((metric - begin) / (end - begin)).clamp(0.0, 1.0) + 0.5) as u32
 }
 
-/// The level of an instance in the last frame, or [`NO_LEVEL`]. A fade in time counts as the level that it leads to.
+/// Level of an instance in the last frame, or [`NO_LEVEL`]. During a fade in time, this is the level to which it leads. `last` is
+/// the decision of that frame.
 pub fn last_level(object: &LodObject, last: u32) -> u32 {
     match (decision_seen(last), decision_steps(last) > 0 && object_flags_timed(object.flags) != 0) {
         (0, _) => NO_LEVEL,
@@ -255,28 +255,27 @@ fn fading_in_time(object: &LodObject, level: u32, mirrored: u32, last: u32, seco
     }
 }
 
-/// What a decision depends on besides object and metric.
+/// Inputs of a decision besides the object and the metric.
 #[derive(Debug, Clone, Copy)]
 pub struct Circumstances {
-    /// Factor of the metric, for a budget: 1 or more.
+    /// The budget's factor of the metric, 1 or more.
     pub factor: f32,
-    /// Whether the placement mirrors.
+    /// Whether the instance's placement mirrors.
     pub is_mirrored: bool,
     /// The view's decision in its last frame; 0 if there is none.
     pub last: u32,
-    /// Seconds since that frame.
+    /// Seconds since the view's last frame.
     pub seconds: f32,
-    /// Whether all fades end.
+    /// Whether all fades end in this frame, because a budget does not fit them.
     pub ends_fades: bool,
 }
 
-/// The metric that a budget's factor, 1 or more, makes of a metric.
+/// A metric after a budget has scaled it. `factor` is 1 or more.
 pub fn coarsened(object: &LodObject, metric: f32, factor: f32) -> f32 {
     factor * metric + (factor - 1.0) * object.metric_floor
 }
 
-/// The level of the last frame that hysteresis holds, or [`NO_LEVEL`]: fades in a band and geomorphs depend on this frame
-/// alone.
+/// Level of the last frame that hysteresis holds, or [`NO_LEVEL`]. Fades in a band and geomorphs do not depend on the last frame.
 pub fn held_level(object: &LodObject, last: u32) -> u32 {
     let is_timed = object_flags_timed(object.flags) != 0;
     match object_flags_transition(object.flags) {
@@ -286,13 +285,13 @@ pub fn held_level(object: &LodObject, last: u32) -> u32 {
     }
 }
 
-/// Whether an instance has faded out.
+/// Whether an instance has faded out completely ([`Transition::Alpha`]).
 pub fn is_faded_out(object: &LodObject, metric: f32) -> bool {
     object_flags_transition(object.flags) == TRANSITION_ALPHA
         && steps_between(metric, object.fade_begin, object.fade_end, FADE_PROGRESS) == FADE_PROGRESS
 }
 
-/// The decision word for a visible instance.
+/// The decision word for a visible instance: level, next level and steps of the change.
 pub fn decision(object: &LodObject, metric: f32, circumstances: &Circumstances) -> u32 {
     let Circumstances { factor, is_mirrored, last, seconds, ends_fades } = *circumstances;
     let mirrored = u32::from(is_mirrored);
@@ -319,12 +318,13 @@ pub fn decision(object: &LodObject, metric: f32, circumstances: &Circumstances) 
     }
 }
 
-/// The finest level that a decision draws.
+/// Finest level that a decision draws.
 pub fn finest_of(decision: u32) -> u32 {
     decision_level(decision).min(decision_next(decision))
 }
 
-/// The list entries of a decision: list and word, at most two. `index` is the instance's index in the object.
+/// List entries of a decision, at most two: the index of the list, and the entry's word. `index` is the instance's index in the
+/// object.
 pub fn entries(object: &LodObject, decision: u32, index: u32) -> Vec<(u32, u32)> {
     if decision_seen(decision) == 0 {
         return Vec::new();
@@ -352,7 +352,7 @@ pub fn entries(object: &LodObject, decision: u32, index: u32) -> Vec<(u32, u32)>
     }
 }
 
-/// The list and the entry of a visible instance that is drawn by itself.
+/// List index and entry word of a visible instance that has its own draw (sorted transparency).
 pub fn sorted_entry(object: &LodObject, decision: u32, index: u32) -> (u32, u32) {
     let steps = decision_steps(decision);
     let (level, word) = match object_flags_transition(object.flags) {

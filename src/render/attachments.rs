@@ -5,13 +5,13 @@ use wgpu::TextureFormat as Format;
 use super::layer::Layer;
 use super::output::OutputProgram;
 
-/// Contents of a target's first colour attachments, which decide the layers that can be drawn into it. All but the first
-/// kind need a depth attachment, and no blending.
+/// Contents of a target's first colour attachments. They decide which layers can be drawn into the target. All kinds except
+/// [`Attachments::Color`] need a depth attachment, and no blending.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Attachments {
-    /// One colour in linear light, in a float or normalized format: [`Layer::Color`] if the target has a colour
-    /// attachment, [`Layer::Transparent`] if WebGPU can blend the format without features, [`Layer::Depth`] if it has a
+    /// One colour in linear light, in a float or normalized format. For [`Layer::Color`] if the target has a colour attachment,
+    /// for [`Layer::Transparent`] if WebGPU can blend the format without features, and for [`Layer::Depth`] if the target has a
     /// depth attachment.
     #[default]
     Color,
@@ -24,17 +24,17 @@ pub enum Attachments {
     /// Positions (`Rgba32Float`) and object and instance numbers (`Rg32Uint`), with one sample per pixel. For
     /// [`Layer::Measure`] and [`Layer::Depth`].
     Measure,
-    /// One colour in linear light, as in [`Attachments::Color`]. For [`Layer::Levels`] and [`Layer::Depth`].
+    /// One colour in linear light, in a float or normalized format. For [`Layer::Levels`] and [`Layer::Depth`].
     Levels,
     /// The colours that the caller's output writes. For [`Layer::Own`] and [`Layer::Depth`].
     Own(OutputProgram),
 }
 
-/// A test for a colour attachment's format, and its message if it fails.
+/// A test for a colour attachment's format, and the error message for formats that fail it.
 type Wanted = (fn(Format) -> bool, &'static str);
 
 impl Attachments {
-    /// The layers that can be drawn besides depth.
+    /// The layers that can be drawn into these attachments besides depth.
     pub(super) fn layers(&self) -> &'static [Layer] {
         match self {
             Self::Color => &[Layer::Color, Layer::Transparent],
@@ -46,7 +46,7 @@ impl Attachments {
         }
     }
 
-    /// The number of colour attachments that a layer writes, counted from the first.
+    /// Number of colour attachments that a layer writes, counted from the first.
     pub(super) fn colors(&self, layer: Layer) -> usize {
         match (layer, self) {
             (Layer::Depth, _) => 0,

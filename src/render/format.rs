@@ -9,8 +9,8 @@ use crate::InputError;
 
 /// The attachments of the render passes or render bundles into which a [`Renderer`](super::Renderer) draws.
 ///
-/// The renderer writes the first colour attachments; [`Attachments`] says how many and with what. Further ones may
-/// belong to the caller's own draws. The renderer leaves them unchanged.
+/// The renderer writes the first colour attachments. [`Attachments`] says how many, and their contents. Further attachments may
+/// belong to the caller's own draws; the renderer leaves them unchanged.
 ///
 /// # Examples
 ///
@@ -35,13 +35,13 @@ use crate::InputError;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetFormat {
-    /// Colour attachments, at most 8, with `None` where the pass has none. The renderer writes those that hold
-    /// [`TargetFormat::attachments`], with their blending and write masks. Shading writes values in linear light; a
-    /// format with `Srgb` in its name encodes them. The format must hold floats or normalized integers.
+    /// Colour attachments, at most 8, with `None` where the pass has none. The renderer writes the first ones, as
+    /// [`TargetFormat::attachments`] says, with their blending and write masks. Shading writes values in linear light; a format
+    /// with `Srgb` in its name encodes them. Formats for shading must hold floats or normalized integers.
     pub color: Vec<Option<wgpu::ColorTargetState>>,
     /// Contents of the first colour attachments.
     pub attachments: Attachments,
-    /// The depth attachment. Without one, later draws cover earlier ones.
+    /// The depth attachment. Without depth, later draws cover earlier ones.
     pub depth: Option<DepthFormat>,
     /// Samples per pixel: 1 or 4.
     pub samples: u32,
@@ -50,55 +50,55 @@ pub struct TargetFormat {
 /// A depth attachment and the direction of its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DepthFormat {
-    /// A format with depth. A stencil aspect is left unchanged.
+    /// A texture format with depth. A stencil aspect is left unchanged.
     pub format: wgpu::TextureFormat,
-    /// Whether depth is reversed: 1 at the near plane, falling with distance. Clear the attachment to 0 then, else to
-    /// 1. It must agree with the camera.
+    /// Whether depth is reversed: 1 at the near plane, falling with distance. Clear the attachment to 0 if depth is reversed, and
+    /// to 1 otherwise. The camera must have the same direction of depth.
     pub reversed: bool,
 }
 
 impl TargetFormat {
-    /// One colour attachment without blending, `Depth32Float` that grows with distance, and one sample.
+    /// A format with one colour attachment without blending, `Depth32Float` that grows with distance, and one sample.
     pub fn new(color: wgpu::TextureFormat) -> Self {
         Self { color: vec![Some(color.into())], ..Self::depth_only(wgpu::TextureFormat::Depth32Float) }
     }
 
-    /// `Rgba8UnormSrgb` without blending, `Depth32Float` that grows with distance, and one sample: the encoding of PNG
-    /// files.
+    /// A format with `Rgba8UnormSrgb` (the encoding of PNG files) without blending, `Depth32Float` that grows with distance, and
+    /// one sample.
     pub fn srgb() -> Self {
         Self::new(wgpu::TextureFormat::Rgba8UnormSrgb)
     }
 
-    /// No colour, depth that grows with distance, and one sample: for shadow maps and separate depth prepasses.
+    /// A format without colour, for shadow maps and separate depth prepasses: depth that grows with distance, and one sample.
     pub fn depth_only(format: wgpu::TextureFormat) -> Self {
         let depth = Some(DepthFormat { format, reversed: false });
         Self { color: Vec::new(), attachments: Attachments::Color, depth, samples: 1 }
     }
 
-    /// For [`Layer::Surface`]: `Rgba16Float`, `Rgba8Unorm` and `Rg16Uint`, `Depth32Float` that grows with distance, and
+    /// A format for [`Layer::Surface`]: `Rgba16Float`, `Rgba8Unorm` and `Rg16Uint`, `Depth32Float` that grows with distance, and
     /// one sample. The colours take 20 of the 32 bytes per sample that WebGPU allows.
     pub fn surface() -> Self {
         Self::holding(Attachments::Surface, &[Format::Rgba16Float, Format::Rgba8Unorm, Format::Rg16Uint])
     }
 
-    /// For [`Layer::Velocity`]: `Rg16Float`, `Depth32Float` that grows with distance, and one sample.
+    /// A format for [`Layer::Velocity`]: `Rg16Float`, `Depth32Float` that grows with distance, and one sample.
     pub fn velocity() -> Self {
         Self::holding(Attachments::Velocity, &[Format::Rg16Float])
     }
 
-    /// For [`Layer::Levels`]: `Rgba8UnormSrgb`, `Depth32Float` that grows with distance, and one sample.
+    /// A format for [`Layer::Levels`]: `Rgba8UnormSrgb`, `Depth32Float` that grows with distance, and one sample.
     pub fn levels() -> Self {
         Self::holding(Attachments::Levels, &[Format::Rgba8UnormSrgb])
     }
 
-    /// For [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, `Depth32Float` that grows with distance, and one sample.
+    /// A format for [`Layer::Measure`]: `Rgba32Float` and `Rg32Uint`, `Depth32Float` that grows with distance, and one sample.
     /// The colours take 24 of the 32 bytes per sample that WebGPU allows.
     pub fn measure() -> Self {
         Self::holding(Attachments::Measure, &[Format::Rgba32Float, Format::Rg32Uint])
     }
 
-    /// For [`Layer::Own`]: colours of these formats, one for each that the output writes, `Depth32Float` that grows
-    /// with distance, and one sample.
+    /// A format for [`Layer::Own`] and this output. `formats` has one colour format for each colour that the output writes. Depth
+    /// is `Depth32Float` that grows with distance, with one sample.
     pub fn of_output(output: &OutputProgram, formats: &[Format]) -> Self {
         Self::holding(Attachments::Own(output.clone()), formats)
     }
@@ -215,7 +215,7 @@ impl TargetFormat {
         for (at, color) in self.color.iter().enumerate() {
             let Some(color) = color else { continue };
             let has = self.check_attachment(&format!("format.color[{at}].format"), color.format, device)?;
-            // Only the first colour is blended.
+            // The renderer blends only the first colour.
             let blends = at == 0 && color.blend.is_some();
             let blendable = wgpu::TextureFormatFeatureFlags::BLENDABLE;
             if blends && !has.contains(blendable) {
@@ -238,7 +238,7 @@ impl TargetFormat {
         Ok(())
     }
 
-    /// The capabilities of an attachment's format on the device.
+    /// Checks an attachment's format on the device, and returns the format's capabilities.
     fn check_attachment(
         &self,
         path: &str,
@@ -254,7 +254,7 @@ impl TargetFormat {
             return Err(InputError::new(path, format!("{format:?}"), bound));
         }
         if features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
-            // Only compiling a pipeline tells what such a device allows.
+            // With this feature, a device may allow more than WebGPU guarantees. Only compiling a pipeline shows whether it does.
             return Ok(wgpu::TextureFormatFeatureFlags::all());
         }
         let has = format.guaranteed_format_features(features);
@@ -272,7 +272,7 @@ impl TargetFormat {
         Ok(has.flags)
     }
 
-    /// The layers that can be drawn.
+    /// The layers that can be drawn into targets of this format.
     pub(super) fn layers(&self) -> impl Iterator<Item = Layer> + use<> {
         let first = self.color.first().and_then(Option::as_ref);
         let is_there = first.is_some();
@@ -287,7 +287,7 @@ impl TargetFormat {
         self.depth.is_some_and(|depth| depth.reversed)
     }
 
-    /// Colour attachments for a pipeline of this layer; those that the layer does not write are masked.
+    /// Colour attachments for a pipeline of this layer. The write mask is empty for attachments that the layer does not write.
     pub(super) fn targets(&self, layer: Layer) -> Vec<Option<wgpu::ColorTargetState>> {
         let masked = |(at, color): (usize, &Option<wgpu::ColorTargetState>)| {
             color.clone().map(|color| match at < self.attachments.colors(layer) {
@@ -306,7 +306,7 @@ impl TargetFormat {
         self.color.iter().enumerate().map(masked).collect()
     }
 
-    /// The depth test of a layer: passes if nearer or equal.
+    /// The depth test of a layer: a fragment passes if it is nearer or equally near.
     pub(super) fn depth_state(&self, layer: Layer) -> Option<wgpu::DepthStencilState> {
         let DepthFormat { format, reversed } = self.depth?;
         let compare = match reversed {
@@ -323,7 +323,7 @@ impl TargetFormat {
     }
 }
 
-/// The device feature that extends a format's guaranteed capabilities.
+/// Name of the device feature with which a format's capabilities satisfy `allows`.
 fn enabling(
     format: wgpu::TextureFormat,
     device: &wgpu::Device,

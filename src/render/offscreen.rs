@@ -56,21 +56,21 @@ impl Offscreen {
     /// targets of other formats, such as one with 4 samples per pixel.
     ///
     /// # Errors
-    /// [`InputError`] for a size of 0 or beyond the device's limit; [`GpuError`].
+    /// [`InputError`] for a size of 0 or beyond the device's limit; [`GpuError`] for failures of the device.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
         Self::with_format(gpu, size, TargetFormat::srgb())
     }
 
     /// A target of `size` pixels in linear light: `Rgba32Float`, `Depth32Float` that grows with distance, and one
-    /// sample per pixel. Its values depend on no driver's rounding or encoding.
+    /// sample per pixel. The values do not depend on a driver's rounding or encoding.
     ///
     /// # Errors
-    /// As [`Offscreen::new`].
+    /// Same as [`Offscreen::new`].
     pub fn linear(gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
         Self::with_format(gpu, size, TargetFormat::new(LINEAR_FORMAT))
     }
 
-    /// Whether the device can hold a target of this size, and read its colours back through one buffer binding.
+    /// Whether the device can hold a target of this size and colour format, and read its colours back through one buffer binding.
     pub fn fits(gpu: &Gpu, size: [u32; 2], color: wgpu::TextureFormat) -> bool {
         let most = gpu.device().limits().max_texture_dimension_2d;
         let [width, height] = size.map(u64::from);
@@ -79,11 +79,12 @@ impl Offscreen {
             && texel.saturating_mul(width * height) <= gpu.max_binding()
     }
 
-    /// A target of `size` pixels in a format without missing attachments, with depth as `Depth32Float`.
+    /// A target of `size` pixels. In `format`, no colour attachment may be missing, and depth must be `Depth32Float`.
     ///
     /// # Errors
-    /// [`InputError`] as [`TargetFormat::validate`], for missing colours, for other depth formats, for more than one
-    /// sample of a format that cannot be resolved, and for a size of 0 or beyond the device's limit; [`GpuError`].
+    /// [`InputError`] as [`TargetFormat::validate`], for missing colours, for depth formats other than `Depth32Float`, for more
+    /// than one sample of a format that cannot be resolved, and for a size of 0 or beyond the device's limit; [`GpuError`] for
+    /// failures of the device.
     pub fn with_format(gpu: &Gpu, size: [u32; 2], format: TargetFormat) -> Result<Self, Error> {
         format.validate()?;
         let depth = format.depth.map(|depth| depth.format);
@@ -126,11 +127,11 @@ impl Offscreen {
         self.size
     }
 
-    /// Records a render pass that calls `draw`. It clears colour to `background` (linear), other attachments to 0, and
-    /// depth to the far value.
+    /// Records a render pass that calls `draw`. The pass first clears colour to `background` (linear), other attachments to 0,
+    /// and depth to the far value.
     ///
     /// # Errors
-    /// Those of `draw`.
+    /// The errors that `draw` returns.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -171,12 +172,12 @@ impl Offscreen {
 
     /// Draws one frame of a scene through a camera, in full detail, over a linear `background`.
     ///
-    /// It compiles the pipelines, records a view and its colours, and waits for the device. A program that draws more
-    /// than one frame keeps a [`View`](crate::scene::View) and a [`Renderer`] instead.
+    /// The call compiles the pipelines, records a view and its colours, and waits for the device. A program that draws more than
+    /// one frame should keep a [`View`](crate::scene::View) and a [`Renderer`] instead.
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour, and as [`View::set`](crate::scene::View::set), [`Scene::record`] and
-    /// [`Renderer::draw`]; [`GpuError`].
+    /// [`InputError`] for a target without colour, and the errors of [`View::set`](crate::scene::View::set), [`Scene::record`]
+    /// and [`Renderer::draw`]; [`GpuError`] for failures of the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn draw(&self, scene: &mut Scene, camera: Camera, background: [f32; 3]) -> Result<(), Error> {
         let gpu = scene.gpu().clone();
@@ -194,16 +195,18 @@ impl Offscreen {
     /// Reads the colours back: sRGB, row by row. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`].
+    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`] for failures of the
+    /// device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
         gpu.block_on(self.read_async(gpu))
     }
 
-    /// As `Offscreen::read`, but completes once the device has finished; see [`Gpu::wait_async`].
+    /// Same as `Offscreen::read`, but completes once the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`].
+    /// [`InputError`] for a target without colour, or with a format other than `Rgba8UnormSrgb`; [`GpuError`] for failures of the
+    /// device.
     pub async fn read_async(&self, gpu: &Gpu) -> Result<RgbaImage, Error> {
         let pixels = self.read_color(gpu, 0, COLOR_FORMAT).await?;
         let reason = "the image that was read back has the wrong size".to_owned();
@@ -215,7 +218,7 @@ impl Offscreen {
     /// device.
     ///
     /// # Errors
-    /// [`InputError`] for a target of another format; [`GpuError`].
+    /// [`InputError`] for a target of another format; [`GpuError`] for failures of the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_linear(&self, gpu: &Gpu) -> Result<LinearImage, Error> {
         let bytes = gpu.block_on(self.read_color(gpu, 0, LINEAR_FORMAT))?;
@@ -226,10 +229,10 @@ impl Offscreen {
         })
     }
 
-    /// Reads the bytes of a colour attachment, texel by texel, row by row. `format` must be its format.
+    /// Reads the bytes of a colour attachment, texel by texel, row by row. `format` must be the attachment's format.
     ///
     /// # Errors
-    /// [`InputError`] for an attachment that does not exist or has another format; [`GpuError`].
+    /// [`InputError`] for an attachment that does not exist or has another format; [`GpuError`] for failures of the device.
     pub async fn read_color(
         &self,
         gpu: &Gpu,
@@ -256,16 +259,16 @@ impl Offscreen {
     /// Reads the depths back, 0 to 1, row by row. Waits for the device.
     ///
     /// # Errors
-    /// [`InputError`] for more than one sample per pixel; [`GpuError`].
+    /// [`InputError`] for more than one sample per pixel; [`GpuError`] for failures of the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_depth(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
         gpu.block_on(self.read_depth_async(gpu))
     }
 
-    /// As `Offscreen::read_depth`, but completes once the device has finished; see [`Gpu::wait_async`].
+    /// Same as `Offscreen::read_depth`, but completes once the device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
-    /// [`InputError`] for more than one sample per pixel; [`GpuError`].
+    /// [`InputError`] for more than one sample per pixel; [`GpuError`] for failures of the device.
     pub async fn read_depth_async(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
         if self.format.samples > 1 {
             let bound = "must be 1 where depth is read";

@@ -12,12 +12,12 @@ use crate::scene::wgsl::prefix::declared_names;
 
 /// A caller-defined output: colours that the caller's WGSL computes for each surface.
 ///
-/// For [`TargetFormat::of_output`](super::TargetFormat::of_output) and [`Layer::Own`](super::Layer::Own). It works with
-/// every kind of object.
+/// Use it with [`TargetFormat::of_output`](super::TargetFormat::of_output) and [`Layer::Own`](super::Layer::Own). An output works
+/// with every kind of object.
 ///
 /// # Examples
 ///
-/// Alpha and texture coordinates, and velocities in the same pass:
+/// An output of alpha and texture coordinates, and of velocities in the same pass:
 ///
 /// ```
 /// use relievo::render::{OutputProgram, TargetFormat};
@@ -65,21 +65,21 @@ impl Hash for OutputProgram {
 }
 
 impl OutputProgram {
-    /// Checks the WGSL of an output. It needs no device and compiles nothing.
+    /// Creates an output from WGSL, and checks the text. This needs no device and compiles nothing.
     ///
-    /// `name` is the prefix of every name that the text declares. For the name `uv`, the text has a struct `UvTargets`
-    /// and a function `fn uv_write(surface: Surface) -> UvTargets`, which must not discard. The members of the struct
-    /// are the colours at `@location(0)` and so on. `Surface` is that of
-    /// [`Renderer::with_shading`](super::Renderer::with_shading).
+    /// `name` is the prefix of every name that the text declares. For the name `uv`, the text has a struct `UvTargets` and a
+    /// function `fn uv_write(surface: Surface) -> UvTargets`, which must not discard. The members of the struct are the colours
+    /// at `@location(0)` and so on. [`Renderer::with_shading`](super::Renderer::with_shading) documents the struct `Surface`.
     ///
-    /// `surface.last_position` is filled only if the text names it; it then needs
-    /// [`Scene::keep_motion_history`](crate::scene::Scene::keep_motion_history). `relievo_view` is the view
-    /// (`clip_from_world`, `last_clip_from_world`, `eye`). `relievo_lit(surface) -> vec4<f32>` returns the shaded
-    /// colour. The text must not bind resources.
+    /// `surface.last_position` is filled only if the text names it. The output then needs
+    /// [`Scene::keep_motion_history`](crate::scene::Scene::keep_motion_history). `relievo_view` is the view (`clip_from_world`,
+    /// `last_clip_from_world`, `eye`). `relievo_lit(surface) -> vec4<f32>` returns the shaded colour. The text must not bind
+    /// resources.
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake, with the path `output:LINE:COLUMN`, both counted from 1; and for a name
-    /// that does not consist of lower-case letters and digits, beginning with a letter (`output.name`).
+    /// [`InputError`] for the first mistake in the text, with the path `output:LINE:COLUMN`, both counted from 1. [`InputError`]
+    /// with the path `output.name` for a name that has other characters than lower-case letters and digits, or does not begin
+    /// with a letter.
     pub fn new(name: &str, source: &str) -> Result<Self, InputError> {
         let is_letter = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit();
         if !name.starts_with(|letter: char| letter.is_ascii_lowercase()) || !name.chars().all(is_letter) {
@@ -99,7 +99,7 @@ impl OutputProgram {
             }
         }
         let least = Program::Own(KindProgram::least()?);
-        // The parts of the smallest kind write no depth of their own, so members are not needed yet.
+        // The smallest kind writes no depth of its own, so the members of the output's struct are not needed yet.
         let mut generated = least.generated();
         generated.kind.deep = false;
         let moves = ["last_position", "velocity_write"].iter().any(|name| code.contains(name));
@@ -119,7 +119,7 @@ impl OutputProgram {
         Ok(Self(Arc::new(Inner { output, code, declared })))
     }
 
-    /// The name, which is the prefix of all its declarations.
+    /// The output's name, which is the prefix of all its declarations.
     pub fn name(&self) -> &str {
         &self.0.output.name
     }
@@ -129,12 +129,12 @@ impl OutputProgram {
         self.0.output.members.len()
     }
 
-    /// Whether the output reads motion, and so needs the motion history.
+    /// Whether the output reads velocities or last positions, and so needs the motion history.
     pub(crate) fn moves(&self) -> bool {
         self.0.output.moves
     }
 
-    /// The prefix of its shader entry points.
+    /// Prefix of the output's shader entry points.
     pub(super) fn entry(&self) -> &str {
         &self.0.output.entry
     }
@@ -150,7 +150,7 @@ impl OutputProgram {
     }
 }
 
-/// The declarations of the colours: the members of the output's struct.
+/// WGSL declarations of the output's colours: the members of its struct `targets`.
 fn members(own: &CallerText<'_>, module: &naga::Module, targets: &str) -> Result<Vec<String>, InputError> {
     let mut found = module.types.iter().filter(|(_, ty)| ty.name.as_deref() == Some(targets));
     let (handle, members) = match found.next() {

@@ -23,12 +23,11 @@ use crate::{Error, InputError};
 use pipelines::{PipelineKey, PipelineSource};
 pub use scene_pass::ScenePass;
 
-/// Draws scenes on targets of one format. Each shadow map and each further format needs its own renderer.
+/// Draws scenes on targets of one format. Each shadow map and each other format needs its own renderer.
 ///
 /// # Examples
 ///
-/// A depth prepass and colour in one pass with the program's own draws. The whole frame is in
-/// [`scene`](crate::scene#examples).
+/// A depth prepass and colour in one pass with the program's own draws. [`scene`](crate::scene#examples) has a complete frame.
 ///
 /// ```no_run
 /// use relievo::gpu::Gpu;
@@ -60,21 +59,21 @@ pub struct Renderer {
     gpu: Gpu,
     format: TargetFormat,
     layouts: SceneLayouts,
-    /// The caller's shading; `None`: the crate's.
+    /// The caller's shading; `None` for the crate's own shading.
     shading: Option<Shading>,
-    /// Whether it draws shadow casters: both sides of all triangles.
+    /// Whether the renderer draws shadow maps, which show both sides of all triangles.
     casts: bool,
-    /// The pipelines of parts. Several keys may share one compiled pipeline.
+    /// Compiled pipelines of parts. Several keys may share one pipeline.
     pipelines: HashMap<PipelineKey, wgpu::RenderPipeline>,
     compiled: HashMap<PipelineSource, wgpu::RenderPipeline>,
 }
 
 impl Renderer {
-    /// A renderer for targets of this format. It compiles nothing yet.
+    /// Creates a renderer for targets of this format. No pipeline is compiled yet.
     ///
     /// # Errors
-    /// [`InputError`] that names the field, for a format that the library cannot draw into or the device does not
-    /// support; [`crate::gpu::GpuError`].
+    /// [`InputError`] that names the field, for a format that the library cannot draw into or the device does not support;
+    /// [`crate::gpu::GpuError`] for failures of the device.
     pub fn new(gpu: &Gpu, format: &TargetFormat) -> Result<Self, Error> {
         format.validate()?;
         format.check_on(gpu.device())?;
@@ -91,26 +90,26 @@ impl Renderer {
 
     /// The same renderer with the caller's shading in every colour pipeline. Nothing is compiled yet.
     ///
-    /// `source` is WGSL with a function `fn shade(surface: Surface, view: View) -> vec4<f32>`, which replaces the
-    /// crate's own. It returns a linear colour, and an alpha that the format's blending may use. It is called in
-    /// uniform control flow and must not discard.
+    /// `source` is WGSL with a function `fn shade(surface: Surface, view: View) -> vec4<f32>`, which replaces the crate's own
+    /// function. The function returns a linear colour, and an alpha that the format's blending may use. It is called in uniform
+    /// control flow and must not discard.
     ///
-    /// The text may have further functions, structs, constants and private variables; none of its names may begin with
-    /// `relievo_`. It may bind resources in bind group 3, visible to the fragment stage, with the layout `layout`. The
-    /// caller sets that group before [`Renderer::draw`]. Of WebGPU's default limits for the fragment stage, the crate's
-    /// pipelines use up to 4 storage buffers, 4 uniform buffers, 5 textures and 3 samplers.
+    /// The text may have further functions, structs, constants and private variables. None of its names may begin with
+    /// `relievo_`. The text may bind resources in bind group 3, visible to the fragment stage, with the layout `layout`. The
+    /// caller sets that group before [`Renderer::draw`]. In the fragment stage, the crate's own pipelines use up to 4 storage
+    /// buffers, 4 uniform buffers, 5 textures and 3 samplers; the caller may use the remainder of WebGPU's default limits.
     ///
-    /// These are the two structs and the crate's own function:
+    /// The two structs and the crate's own function are:
     ///
     /// ```wgsl
     #[doc = include_str!("../../wgsl/render/scene_shade.wgsl")]
     /// ```
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`, both counted from 1.
-    /// [`InputError`] with the path `shading.layout` for a layout that does not match the text's bindings, or that exceeds
-    /// the device's limits together with the crate's own groups. A browser reports exceeded limits later
-    /// ([`Scene::health`]). [`crate::gpu::GpuError`].
+    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`, both counted from 1. [`InputError`]
+    /// with the path `shading.layout` for a layout that does not match the text's bindings, or that exceeds the device's limits
+    /// together with the crate's own groups. A browser reports exceeded limits later ([`Scene::health`]).
+    /// [`crate::gpu::GpuError`] for other failures of the device.
     pub fn with_shading(self, source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, Error> {
         let shading = Shading::new(source, layout)?;
         shading.check_layout(&self.gpu, &self.format, &self.layouts)?;
@@ -123,7 +122,7 @@ impl Renderer {
         &self.format
     }
 
-    /// Compiles the missing pipelines of these objects, with or without a sun's shadow.
+    /// Compiles the missing pipelines of these objects, with or without the shadow of a sun.
     pub(crate) fn prepare_objects<'a>(
         &mut self,
         objects: impl Iterator<Item = (&'a dyn Drawable, Transition)>,
@@ -153,7 +152,7 @@ impl Renderer {
     /// changed cameras need no new pipelines. Similar objects share pipelines, so a second call is usually quick.
     ///
     /// # Errors
-    /// [`InputError`] for a scene on another device; errors of the driver's compiler.
+    /// [`InputError`] for a scene on another device; errors of the driver's shader compiler.
     ///
     /// # Examples
     ///
@@ -173,10 +172,10 @@ impl Renderer {
         self.prepare_objects(scene.drawables(), scene.is_shadowed())
     }
 
-    /// As [`Renderer::prepare`], but completes once the device has reported its errors ([`Gpu::check_async`]).
+    /// Same as [`Renderer::prepare`], but completes once the device has reported its errors ([`Gpu::check_async`]).
     ///
     /// # Errors
-    /// As [`Renderer::prepare`].
+    /// Same as [`Renderer::prepare`].
     pub async fn prepare_async(&mut self, scene: &Scene) -> Result<(), Error> {
         self.prepare(scene)?;
         Ok(self.gpu.check_async().await?)
@@ -184,24 +183,24 @@ impl Renderer {
 
     /// Draws a layer of a scene as the view saw it in the last [`Scene::record`], which must have recorded this view.
     ///
-    /// It sets pipelines, bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else. Bind
-    /// group 3, viewport, scissor and stencil reference are the caller's. The pass must have the attachments and
-    /// samples of the renderer's format and belong to its device; wgpu checks this.
+    /// The call sets pipelines, bind groups 0 to 2, the first vertex buffer and the index buffer, and nothing else. Bind group 3,
+    /// viewport, scissor and stencil reference are the caller's. The pass must have the attachments and samples of the renderer's
+    /// format and belong to its device; wgpu checks this.
     ///
-    /// Each object takes an indirect draw for each part and level, twice that if only some of its instances are mirrored, and
-    /// twice that if its levels fade.
+    /// Each object takes one indirect draw per part and level. The number doubles if only some of the object's instances are
+    /// mirrored, and doubles again if its levels fade.
     ///
-    /// A render bundle shows later recordings of the view too, but nothing checks whether the last frame recorded the
-    /// view. Record the bundle anew after objects were added or grew, after materials changed, and when an object gets
-    /// its first mirrored or its first unmirrored instance.
+    /// A render bundle that is executed in a later frame shows the view's latest recording. Nothing checks then whether the last
+    /// frame recorded the view. Record the bundle anew after objects were added or grew, after materials changed, and when an
+    /// object gets its first mirrored or its first unmirrored instance.
     ///
     /// # Errors
     /// [`InputError`] for:
     /// - a scene on another device, or a pass of another [`wgpu::Instance`];
-    /// - a view of another scene, or one that the last [`Scene::record`] left out;
+    /// - a view of another scene, or a view that the last [`Scene::record`] left out;
     /// - a view that was not recorded since objects were added, removed or grew, or since [`Scene::refresh`] or
     ///   [`Scene::set_error_budget`];
-    /// - a view whose camera has the other depth direction;
+    /// - a view whose camera has another depth direction than the format;
     /// - a layer for which the format has no attachment;
     /// - objects that were added since [`Renderer::prepare`];
     /// - [`Layer::Velocity`] in a scene without motion history.
@@ -262,10 +261,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws objects. If any check fails, it draws nothing.
+    /// Draws objects. If any check fails, nothing is drawn.
     ///
     /// # Errors
-    /// [`InputError`] for a layer that the format does not have, a view with the other depth direction, and objects
+    /// [`InputError`] for a layer that the format does not have, a view with another depth direction than the format, and objects
     /// without compiled pipelines.
     pub(crate) fn draw_objects<'a>(
         &'a self,
@@ -290,7 +289,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// The lists of a part that a layer draws.
+    /// The instance lists of a part that a layer draws.
     fn lists_of(&self, part: &Specialization, transition: Transition, layer: Layer) -> Vec<ListDraw> {
         let is_transparent = layer == Layer::Transparent;
         let fading = match transition {
@@ -298,7 +297,7 @@ impl Renderer {
             Transition::Dither(_) => (!is_transparent).then_some(Fade::Dither),
             _ if is_transparent => Some(Fade::Blend),
             Transition::FadeIn(_) | Transition::TwoPhase(_) => None,
-            // What is behind shows through, so it must pass the test against depth that was drawn first.
+            // Surfaces behind these instances show through, so a depth prepass must not hide them.
             Transition::CrossFade(_) | Transition::Alpha { .. } => {
                 let shows = layer != Layer::Color && (layer != Layer::Depth || self.casts);
                 shows.then_some(Fade::Heavier)
@@ -306,11 +305,11 @@ impl Renderer {
         };
         let solid = (!is_transparent).then_some(ListDraw { layer, fade: Fade::None, is_fading: false });
         let fading = fading.map(|fade| ListDraw { layer, fade, is_fading: true });
-        // Blended parts are drawn one by one.
+        // Blended parts are not drawn from lists but instance by instance.
         solid.into_iter().chain(fading).filter(|_| !part.state().blended).collect()
     }
 
-    /// The pipelines of a part in a layer, by how instances fade.
+    /// The kinds of fades for which a part needs pipelines in a layer.
     fn fades_of(&self, part: &Specialization, transition: Transition, layer: Layer) -> Vec<Fade> {
         if part.state().blended && layer == Layer::Transparent {
             return vec![sorted_fade(transition)];
@@ -320,7 +319,7 @@ impl Renderer {
         lists.into_iter().chain(hiding).map(|list| list.fade).collect()
     }
 
-    /// Draws the parts of an object. `lists` gives what to draw of a part.
+    /// Draws the parts of an object. `lists` gives the instance lists to draw of a part.
     fn draw_object<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -336,7 +335,7 @@ impl Renderer {
         }
     }
 
-    /// Draws parts of single instances in the host's order.
+    /// Draws parts of single instances in the host's order, from back to front.
     fn draw_sorted<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -374,7 +373,7 @@ impl Renderer {
         self.pipelines.get(&self.key(layer, part, is_flipped, view.is_shadowed).fading(fade))
     }
 
-    /// Draws one part of an object, given by its index, in a layer that shows it.
+    /// Draws one part of an object, given by its index and value, from these lists.
     fn draw_part<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -400,19 +399,19 @@ impl Renderer {
     }
 }
 
-/// A draw of a part's lists.
+/// A draw of one part from its instance lists.
 #[derive(Debug, Clone, Copy)]
 struct ListDraw {
-    /// The layer of the pipeline.
+    /// Layer of the pipeline.
     layer: Layer,
-    /// How instances fade.
+    /// How the instances fade.
     fade: Fade,
-    /// Whether the lists are those of instances that fade.
+    /// Whether the lists of fading instances are drawn, instead of the others.
     is_fading: bool,
 }
 
-/// What is drawn before a part is blended, to hide its inside and what fades behind it: its depth. A level that is blended over
-/// its opaque one needs nothing.
+/// The depth draw before a part is blended, which hides the part's inside and instances that fade behind it. `None` for a level
+/// that is blended over an opaque level.
 fn hiding(part: &Specialization, transition: Transition) -> Option<ListDraw> {
     let fade = match transition {
         Transition::Alpha { .. } => Fade::None,
@@ -428,7 +427,7 @@ fn sorted_fade(transition: Transition) -> Fade {
     if matches!(transition, Transition::Alpha { .. }) { Fade::Blend } else { Fade::None }
 }
 
-/// Draws a part of all mirrored instances, or of all others, of those that fade or of those that do not.
+/// Draws one part from the lists of all levels. The two flags choose mirrored or unmirrored instances, and fading or other ones.
 fn draw_lists<'a>(
     pass: &mut impl ScenePass<'a>,
     view: &DrawnView<'a>,

@@ -1,6 +1,6 @@
 //! The caller's shading: WGSL with a function `shade` that replaces the crate's own.
 //!
-//! It is placed before the crate's text ([`CallerText`]).
+//! The caller's text is placed before the crate's text ([`CallerText`]).
 
 use naga::{Function, GlobalVariable, Handle, Module, Span, Type, TypeInner};
 
@@ -14,10 +14,10 @@ use crate::scene::specialization::Program;
 use crate::scene::wgsl::prefix::declared_names;
 use crate::{Error, InputError};
 
-/// The start of the function that the caller's text replaces. It is the last function of each shader.
+/// Start of the crate's function that the caller's text replaces. This function is the last one of each shader.
 const REPLACED: &str = "fn shade(";
 
-/// The caller's bind group.
+/// Index of the caller's bind group.
 const OWN_GROUP: u32 = 3;
 
 /// Checked WGSL of the caller's shading.
@@ -26,12 +26,12 @@ pub(super) struct Shading {
     source: String,
     /// The names that the text declares.
     declared: Vec<String>,
-    /// The layout of bind group 3.
+    /// Layout of bind group 3, if the text may bind resources.
     pub layout: Option<wgpu::BindGroupLayout>,
 }
 
 impl Shading {
-    /// Checks a text. Without a layout it must not bind resources.
+    /// Checks the WGSL of a shading. Without a layout, the text must not bind resources.
     ///
     /// # Errors
     /// [`InputError`] whose path is `shading:LINE:COLUMN`, both counted from 1.
@@ -51,13 +51,13 @@ impl Shading {
         &self.declared
     }
 
-    /// The same text with another layout of bind group 3.
+    /// This shading with another layout of bind group 3.
     pub fn with_layout(self, layout: &wgpu::BindGroupLayout) -> Self {
         Self { layout: Some(layout.clone()), ..self }
     }
 
-    /// Checks the layout of bind group 3 against the text's bindings, and against the device's limits beside the
-    /// crate's own groups. To do so it compiles the text alone. In a browser the device reports errors later.
+    /// Checks the layout of bind group 3 against the text's bindings, and against the device's limits together with the crate's
+    /// own groups. For this, the text is compiled alone. In a browser, the device reports errors later.
     ///
     /// # Errors
     /// [`InputError`] for `shading.layout`, with wgpu's message; [`GpuError`] for other failures of the device.
@@ -126,18 +126,18 @@ impl Shading {
     }
 }
 
-/// Vertex and fragment entry points, so that the caller's text compiles alone.
+/// Vertex and fragment entry points with which the caller's text compiles alone.
 const ENTRIES: &str = "
 @vertex fn relievo_vertex() -> @builtin(position) vec4<f32> { return vec4<f32>(); }
 @fragment fn relievo_fragment() -> @location(0) vec4<f32> { return shade(Surface(), View()); }
 ";
 
-/// The caller's text followed by the structs that it uses.
+/// The caller's text, followed by the crate's structs that it uses.
 fn with_structures(source: &str) -> String {
     format!("{source}\n{}\n{}\n", structure("Surface"), structure("View"))
 }
 
-/// The declaration of a struct that the caller's text uses.
+/// WGSL declaration of one of the crate's structs that the caller's text uses.
 fn structure(name: &str) -> &'static str {
     let text = RENDER_SCENE_MESH.source;
     let start = text.find(&format!("struct {name} {{")).unwrap_or(text.len());
@@ -145,11 +145,11 @@ fn structure(name: &str) -> &'static str {
     &text[start..end]
 }
 
-/// The caller's text with the structs that it uses.
+/// The caller's text with the crate's structs that it uses.
 struct Own<'a>(CallerText<'a>);
 
 impl Own<'_> {
-    /// Checks restrictions beyond valid WGSL.
+    /// Checks the restrictions of shading that go beyond valid WGSL.
     fn check(&self, module: &Module, has_layout: bool) -> Result<(), InputError> {
         let at = |span: Span, bound: &str| Err(self.0.refused([span].into_iter(), bound.to_owned()));
         if let Some((handle, _)) = module.overrides.iter().next() {
@@ -196,7 +196,7 @@ impl Own<'_> {
 
 const SIGNATURE: &str = "must be `fn shade(surface: Surface, view: View) -> vec4<f32>`";
 
-/// The reason to refuse a variable of module scope, if there is one.
+/// The reason to refuse a module-scope variable of the caller's text; `None` if the variable is allowed.
 fn refused_variable(variable: &GlobalVariable, has_layout: bool) -> Option<&'static str> {
     if variable.space == naga::AddressSpace::WorkGroup {
         return Some("must not lie in workgroup memory, which fragment stages do not have");

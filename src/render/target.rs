@@ -2,16 +2,16 @@
 
 use crate::gpu::{Gpu, GpuError};
 
-/// sRGB colours.
+/// Colour format of sRGB pictures.
 pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// Colours in linear light.
+/// Colour format of pictures in linear light.
 pub const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-/// Depth.
+/// Format of depth.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Reads an aspect of a texture, row by row; `texel` is its bytes per texel. See [`Gpu::wait_async`].
+/// Reads an aspect of a texture back, row by row; `texel` is the number of bytes per texel. See [`Gpu::wait_async`].
 pub(super) async fn read_texture(
     gpu: &Gpu,
     texture: &wgpu::Texture,

@@ -1,4 +1,4 @@
-//! Built-in models and height maps, which scene files name as `builtin:` and a name.
+//! Built-in models and height maps, which scene files name with the prefix `builtin:`.
 
 use image::RgbaImage;
 
@@ -6,19 +6,19 @@ use crate::InputError;
 use crate::asset::Model;
 use crate::surface::HeightMap;
 
-/// A provider of the models and height maps that scene files name after `builtin:`. The crate `relievo-samples` has
-/// one.
+/// A provider of the models and height maps that scene files name with the prefix `builtin:`. The crate `relievo-samples` has a
+/// provider.
 pub trait BuiltIns {
     /// The built-in model with this name.
     ///
     /// # Errors
-    /// [`InputError`] for another name, which lists the existing ones.
+    /// [`InputError`] for an unknown name; the message lists the existing names.
     fn model(&self, name: &str) -> Result<Model, InputError>;
 
     /// The heights and colours of the built-in relief with this name.
     ///
     /// # Errors
-    /// [`InputError`] for another name, which lists the existing ones.
+    /// [`InputError`] for an unknown name; the message lists the existing names.
     fn map(&self, name: &str) -> Result<(HeightMap, RgbaImage), InputError>;
 }
 

@@ -7,14 +7,14 @@ use crate::scene::{Camera, Depth, Placement};
 /// The range of vertical fields of view, in radians.
 pub(super) const FIELDS_OF_VIEW: [f64; 2] = [0.01, 3.1];
 
-/// A camera that moves on a smooth path, or does not move.
+/// A camera that moves on a smooth path over time, or stands still.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraPath {
     /// The keys of the path in ascending order; at least one.
     pub(super) keys: Vec<CameraKey>,
-    /// The distance of the near plane, > 0.
+    /// The distance of the near plane in world units, above 0.
     pub(super) near: f64,
-    /// The distance of the far plane; `None` for infinity.
+    /// The distance of the far plane in world units; `None` for infinity.
     pub(super) far: Option<f64>,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct CameraKey {
     pub time: f64,
     /// The eye's position in world units.
     pub at: DVec3,
-    /// The point that it looks at.
+    /// The point that the eye looks at, in world units.
     pub look: DVec3,
     /// Vertical field of view in radians.
     pub field_of_view: f64,
@@ -37,15 +37,15 @@ impl CameraPath {
         self.keys[self.keys.len() - 1].time
     }
 
-    /// The camera at a time in seconds, for a picture of `viewport` pixels, in the eye's cell.
+    /// The camera at `time` seconds, for a picture of `viewport` pixels. Its cell is the cell that contains the eye.
     pub fn camera(&self, time: f64, viewport: [u32; 2], depth: Depth) -> Camera {
         let CameraKey { at, look, field_of_view, .. } = self.key(time);
         let edge = f64::from(Placement::CELL);
-        // Casts saturate.
+        // The casts saturate.
         let cell = (at / edge).floor().to_array().map(|cell| cell as i32);
         let eye = (at - DVec3::from(cell.map(f64::from)) * edge).as_vec3();
         let forward = (look - at).normalize_or(DVec3::NEG_Z);
-        // Looking straight up or down, −Z replaces the undefined up vector.
+        // When the camera looks straight up or down, −Z replaces the undefined up vector.
         let up = if forward.y.abs() > 0.9999 { DVec3::NEG_Z } else { DVec3::Y };
         Camera {
             cell,
@@ -56,8 +56,8 @@ impl CameraPath {
         }
     }
 
-    /// The path at a time, by cubic Hermite curves through its keys. The velocity at a key is the mean velocity between
-    /// its neighbours (Catmull and Rom 1974, for uneven times).
+    /// Interpolates the path at `time` seconds by cubic Hermite curves through its keys. The velocity at a key is the mean
+    /// velocity between the neighbouring keys (Catmull and Rom 1974, for uneven times).
     fn key(&self, time: f64) -> CameraKey {
         let keys = &self.keys;
         let (first, last) = (keys[0], keys[keys.len() - 1]);
@@ -97,7 +97,7 @@ impl CameraPath {
         let focal = 1.0 / libm::tan(0.5 * field_of_view);
         let aspect = f64::from(width) / f64::from(height.max(1));
         let near = self.near;
-        // Depth is scale + offset / distance.
+        // Depth is scale + offset / distance, with the distance ahead of the eye.
         let [scale, offset] = match (depth, self.far) {
             (Depth::Forward, None) => [1.0, -near],
             (Depth::Forward, Some(far)) => [far / (far - near), -near * far / (far - near)],
@@ -136,7 +136,7 @@ mod tests {
         for key in &path.keys {
             assert_eq!(path.key(key.time), *key);
         }
-        // The first segment has a constant speed, that of the segments around its ends.
+        // The first segment has a constant speed, because the velocities at its two keys are equal.
         for time in [0.25, 0.5, 0.75] {
             assert!((x(time) - time).abs() < 1e-12, "{}", x(time));
         }

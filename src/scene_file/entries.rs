@@ -11,25 +11,25 @@ use crate::surface::relief::ReliefMethod;
 use crate::terrain::morph::Morph;
 use crate::terrain::recipe::Recipe;
 
-/// The terrain.
+/// The terrain of a scene file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TerrainEntry {
     pub recipe: Recipe,
     pub patches: Vec<[i32; 2]>,
-    /// The target heights, and how far the morph has progressed.
+    /// The target heights of a morph, and the progress of the morph.
     pub target: Option<(Recipe, Morph)>,
 }
 
-/// A model with its instances.
+/// An entry of `meshes` or `characters`: a model with its instances.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ObjectEntry {
-    /// Its path in the scene file, such as `meshes[0]`.
+    /// Path of the entry in the scene file, such as `meshes[0]`.
     pub path: String,
     pub source: Source,
     pub kind: EntryKind,
-    /// Transition of its levels of detail; `None`: the scene's.
+    /// Transition of the object's levels of detail; `None` for the scene's transition.
     pub transition: Option<Transition>,
-    /// How its levels of detail are chosen; `None`: by error.
+    /// How the object's levels of detail are chosen; `None`: by error.
     pub level_of_detail: Option<LevelOfDetail>,
     pub instances: Vec<InstanceEntry>,
     pub scatter: Option<Scatter>,
@@ -44,7 +44,7 @@ pub(super) enum EntryKind {
 }
 
 impl ObjectEntry {
-    /// Number of instances.
+    /// Number of listed and scattered instances.
     pub fn count(&self) -> usize {
         self.instances.len() + self.scatter.as_ref().map_or(0, |scatter| scatter.count as usize)
     }
@@ -71,17 +71,17 @@ impl std::fmt::Display for Source {
     }
 }
 
-/// The relief on a mesh.
+/// The relief material of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ReliefEntry {
     pub heights: Source,
-    /// Whether heights are the alpha channel instead of the brightness.
+    /// Whether the alpha channel has the heights, instead of the brightness.
     pub is_alpha: bool,
     pub albedo: Option<Source>,
     pub normals: Option<Source>,
-    /// Depth in tiles.
+    /// Depth of the relief in tiles (repeats of its texture).
     pub scale: f32,
-    /// Factor of the mesh's texture coordinates.
+    /// Factor by which the mesh's texture coordinates are multiplied.
     pub tiles: f32,
     pub method: ReliefMethod,
     pub shadow: ReliefShadow,
@@ -90,20 +90,20 @@ pub(super) struct ReliefEntry {
 /// A character's animation.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PlayEntry {
-    /// Name or index of the clip; `None`: the first one.
+    /// Name or index of the clip; `None` for the first clip.
     pub clip: Option<String>,
     pub rate: f32,
     pub start: f64,
     pub wrap: Wrap,
 }
 
-/// An instance.
+/// A listed instance of a mesh or a character.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct InstanceEntry {
     pub spot: Spot,
     pub turn: Quat,
     pub scale: Vec3,
-    /// Its animation, if it is a character.
+    /// Animation of a character's instance; `None` for a mesh.
     pub play: Option<PlayEntry>,
 }
 
@@ -116,14 +116,14 @@ pub(super) enum Spot {
     On { x: f64, z: f64, lift: f64 },
 }
 
-/// Instances at pseudorandom places drawn from a seed.
+/// Instances at pseudorandom positions, which depend on a seed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scatter {
     pub count: u32,
     pub seed: String,
-    /// Two corners: smallest and largest x and z. `None`: the patches of the terrain.
+    /// Area as two corners: the smallest x and z, and the largest x and z. `None`: the patches of the terrain.
     pub area: Option<[[f64; 2]; 2]>,
-    /// The smallest and the largest scale.
+    /// The smallest and the largest scale of the instances.
     pub scale: [f32; 2],
     /// Height above the ground in model units.
     pub lift: f64,

@@ -1,4 +1,4 @@
-//! JSON as a tree, and a cursor into it that reports every mistake with path, value and bound.
+//! JSON as a tree, and a cursor into this tree that reports every mistake with path, value and bound.
 
 use std::fmt;
 
@@ -31,7 +31,7 @@ impl Json {
         Ok(json)
     }
 
-    /// A cursor at the whole value.
+    /// A cursor at the root value.
     pub fn at(&self) -> At<'_> {
         At { path: String::new(), value: &self.0 }
     }
@@ -98,7 +98,7 @@ impl<'de> Visitor<'de> for JsonVisitor {
     }
 }
 
-/// The value of a repeated field. Its deserialization fails, so that the error has its path.
+/// The value of a repeated field. Its deserialization fails, so that the error has the field's path.
 struct Twice;
 
 impl<'de> Deserialize<'de> for Twice {
@@ -115,7 +115,7 @@ pub(super) struct At<'a> {
 }
 
 impl<'a> At<'a> {
-    /// An error about this value.
+    /// An error for the value at the cursor.
     pub fn error(&self, bound: impl Into<String>) -> InputError {
         InputError::new(self.path(), shown(self.value), bound)
     }
@@ -124,12 +124,12 @@ impl<'a> At<'a> {
         if self.path.is_empty() { "scene" } else { &self.path }
     }
 
-    /// The value itself.
+    /// The JSON value at the cursor.
     pub fn value(&self) -> &'a Value {
         self.value
     }
 
-    /// The fields of an object. Unknown fields are refused.
+    /// The fields of the object at the cursor. Fields that are not in `known` are refused.
     pub fn fields(&self, known: &[&str]) -> Result<Fields<'a>, InputError> {
         let Value::Object(fields) = self.value else { return Err(self.error("must be an object")) };
         let all = Fields { path: self.path.clone(), fields };
@@ -140,7 +140,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// The entries of a list with `least` to `most` entries.
+    /// Cursors at the entries of the list at the cursor, which must have `least` to `most` entries.
     pub fn list(&self, least: usize, most: usize) -> Result<Vec<Self>, InputError> {
         let Value::Array(all) = self.value else { return Err(self.error("must be a list")) };
         if !(least..=most).contains(&all.len()) {
@@ -151,13 +151,13 @@ impl<'a> At<'a> {
         Ok(all.iter().enumerate().map(entry).collect())
     }
 
-    /// A number in `low..=high`.
+    /// The value at the cursor as a number in `low..=high`.
     pub fn number(&self, low: f64, high: f64) -> Result<f64, InputError> {
         let number = self.value.as_f64().filter(|value| (low..=high).contains(value));
         number.ok_or_else(|| self.error(format!("must be a number in {low}..={high}")))
     }
 
-    /// A whole number in `low..=high`.
+    /// The value at the cursor as a whole number in `low..=high`.
     pub fn whole(&self, low: i64, high: i64) -> Result<i64, InputError> {
         // JSON does not distinguish 3 from 3.0.
         let whole = |value: f64| (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64);
@@ -166,7 +166,7 @@ impl<'a> At<'a> {
         number.ok_or_else(|| self.error(format!("must be a whole number in {low}..={high}")))
     }
 
-    /// `N` numbers in `low..=high`.
+    /// The value at the cursor as `N` numbers in `low..=high`.
     pub fn numbers<const N: usize>(&self, low: f64, high: f64) -> Result<[f64; N], InputError> {
         let refused = || self.error(format!("must be a list of {N} numbers"));
         let list = self.list(N, N).map_err(|_| refused())?;
@@ -174,7 +174,7 @@ impl<'a> At<'a> {
         numbers.try_into().map_err(|_| refused())
     }
 
-    /// A string of 1 to 1024 bytes.
+    /// The value at the cursor as a string of 1 to 1024 bytes.
     pub fn text(&self) -> Result<&'a str, InputError> {
         match self.value {
             Value::String(text) if (1..=1024).contains(&text.len()) => Ok(text),
@@ -182,12 +182,12 @@ impl<'a> At<'a> {
         }
     }
 
-    /// A boolean.
+    /// The value at the cursor as a boolean.
     pub fn flag(&self) -> Result<bool, InputError> {
         self.value.as_bool().ok_or_else(|| self.error("must be true or false"))
     }
 
-    /// The value behind one of these names.
+    /// Finds the string at the cursor in `names`, and returns the value that belongs to it.
     pub fn one_of<T: Copy, const N: usize>(&self, names: [(&str, T); N]) -> Result<T, InputError> {
         let found = names.iter().find(|(name, _)| self.value.as_str() == Some(name));
         let bound = || format!("must be one of {}", names.map(|(name, _)| format!("{name:?}")).join(", "));
@@ -195,7 +195,7 @@ impl<'a> At<'a> {
     }
 }
 
-/// The fields of an object.
+/// The fields of an object, and the object's path.
 #[derive(Debug)]
 pub(super) struct Fields<'a> {
     path: String,
@@ -203,17 +203,17 @@ pub(super) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// An optional field.
+    /// Cursor at a field; `None` if the field is missing.
     pub fn get(&self, name: &str) -> Option<At<'a>> {
         Some(At { path: self.path_of(name), value: self.fields.get(name)? })
     }
 
-    /// A required field; `what` describes it.
+    /// Cursor at a required field. `what` describes the field in the error.
     pub fn need(&self, name: &str, what: &str) -> Result<At<'a>, InputError> {
         self.get(name).ok_or_else(|| self.missing(name, what))
     }
 
-    /// The error for a missing field.
+    /// The error for a missing field. `what` describes the field.
     pub fn missing(&self, name: &str, what: &str) -> InputError {
         InputError::new(self.path_of(name), "missing", format!("must be given: {what}"))
     }
@@ -222,12 +222,12 @@ impl<'a> Fields<'a> {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// A number in `low..=high`; `otherwise` if the field is missing.
+    /// The field's value as a number in `low..=high`; `otherwise` if the field is missing.
     pub fn number(&self, name: &str, low: f64, high: f64, otherwise: f64) -> Result<f64, InputError> {
         Ok(self.maybe(name, |at| at.number(low, high))?.unwrap_or(otherwise))
     }
 
-    /// The value behind one of these names; `otherwise` if the field is missing.
+    /// The value that belongs to the field's string in `names`; `otherwise` if the field is missing.
     pub fn one_of<T: Copy, const N: usize>(
         &self,
         name: &str,
@@ -237,7 +237,7 @@ impl<'a> Fields<'a> {
         Ok(self.maybe(name, |at| at.one_of(names))?.unwrap_or(otherwise))
     }
 
-    /// The result of `read` for a field; `None` if the field is missing.
+    /// Calls `read` with a cursor at a field, and returns the result; `None` if the field is missing.
     pub fn maybe<T>(
         &self,
         name: &str,
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(refused(r#"{"a": 1} 2"#), "scene");
         assert_eq!(refused(r#"{"a": {"b": 1, "b": 2}}"#), "a.b");
         assert_eq!(refused(r#"{"a": [1, 1e999]}"#), "a[1]");
-        // Nested deeper than any scene.
+        // Lists nested deeper than in any scene are refused.
         assert!(Json::parse(&format!("{}{}", "[".repeat(9999), "]".repeat(9999))).is_err());
     }
 }

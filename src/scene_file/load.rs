@@ -20,24 +20,23 @@ use crate::terrain::config::ZoneTexture;
 use crate::terrain::texture::TerrainTexture;
 use crate::{InputError, srgb};
 
-/// Levels of detail use a quarter of the poses of [`poses_of`], 15 a second, within these bounds, so that a scene loads
-/// in seconds. `relievo scene --compare` measures the effect.
+/// Levels of detail are computed from a quarter of the poses that [`poses_of`] counts, 15 poses a second, within these bounds.
+/// Fewer poses let a scene load in seconds. `relievo scene --compare` measures the effect.
 const SPARSER: usize = 4;
 const LEAST_POSES: usize = 9;
 const MOST_POSES: usize = 48;
 
-/// A scene file with the contents of all files that it names. It can become a [`World`](super::World) any number of
-/// times.
+/// A scene file with the contents of all files that it names. A [`World`](super::World) can be built from it any number of times.
 #[derive(Debug, Clone)]
 pub struct LoadedScene {
     pub(super) file: SceneFile,
-    /// The model of each object.
+    /// The loaded model or relief of each object.
     pub(super) objects: Vec<Loaded>,
     /// The textures of the terrain's zones.
     pub(super) textures: Vec<TerrainTexture>,
 }
 
-/// The model of an object.
+/// The loaded model or relief of an object.
 #[derive(Debug, Clone)]
 pub(super) enum Loaded {
     /// A model with levels of detail.
@@ -51,7 +50,7 @@ impl LoadedScene {
         &self.file
     }
 
-    /// Reads a scene file, and the files that it names, from the file system. Names after `builtin:` come from
+    /// Reads a scene file, and the files that it names, from the file system. Names with the prefix `builtin:` come from
     /// `built_ins`.
     ///
     /// # Errors
@@ -69,14 +68,14 @@ impl LoadedScene {
 impl SceneFile {
     /// Reads the files that the scene names through `read`, and computes levels of detail.
     ///
-    /// `read` gets paths relative to the scene file. Names after `builtin:` come from `built_ins`;
-    /// [`NoBuiltIns`](super::NoBuiltIns) has none. Levels are computed for all meshes, and for characters in the clips
-    /// that they play, from 15 poses a second and at most 48 per clip. A model that several objects show is read and
-    /// simplified once, for all of their clips together.
+    /// `read` gets paths relative to the scene file. Names with the prefix `builtin:` come from `built_ins`;
+    /// [`NoBuiltIns`](super::NoBuiltIns) has none. Levels are computed for all meshes, and for characters in the clips that they
+    /// play, from 15 poses a second and at most 48 per clip. A model that several objects show is read and simplified only once,
+    /// for all of their clips together.
     ///
     /// # Errors
-    /// [`InputError`] with the path of the name in the scene file, for a file that cannot be read or understood, for
-    /// one that does not suit its use, and for a clip that a model does not have.
+    /// [`InputError`] with the path of the name in the scene file, for a file that cannot be read or understood, for a file that
+    /// does not suit its use, and for a clip that a model does not have.
     pub fn load(
         &self,
         read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
@@ -97,7 +96,7 @@ impl SceneFile {
     }
 }
 
-/// The files read so far; each model once.
+/// Reader of files, and the models that were read so far. Each model is read once.
 struct Files<'a> {
     read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
     built_ins: &'a dyn BuiltIns,
@@ -106,20 +105,20 @@ struct Files<'a> {
     levelled: HashMap<Source, Levelled>,
 }
 
-/// A model with levels of detail for all objects that show it.
+/// A model with levels of detail, shared by all objects that show the model.
 #[derive(Clone)]
 struct Levelled {
     model: Arc<Model>,
-    /// The model at rest, if an object shows it so, with the same vertices, triangles and levels.
+    /// The model at rest, with the same vertices, triangles and levels. `None` if no object shows the model at rest.
     resting: Option<Arc<Model>>,
 }
 
-/// The use that objects make of a model with levels of detail.
+/// How objects use a model that has levels of detail.
 #[derive(Default)]
 struct Needs {
     /// The clips that characters play.
     clips: BTreeSet<usize>,
-    /// Whether an object shows it at rest.
+    /// Whether an object shows the model at rest.
     is_at_rest: bool,
 }
 
@@ -248,7 +247,7 @@ impl<'a> Files<'a> {
         Ok(Relief { options, material, double_sided, ..made })
     }
 
-    /// The heights of a relief, and the colours that come with them.
+    /// The heights of a relief, and the colours that the same file or built-in map has.
     fn heights(
         &self,
         path: &str,
@@ -291,7 +290,7 @@ impl<'a> Files<'a> {
     }
 }
 
-/// A mistake inside a file, reported at the file's name in the scene file.
+/// Reports a mistake inside a file, with the path of the file's name in the scene file.
 fn within(path: &str, source: &Source, error: &InputError) -> InputError {
     InputError::new(path, source, error.to_string())
 }
@@ -314,7 +313,7 @@ fn played(entry: &ObjectEntry, all: &PlayEntry, model: &Model) -> Result<Vec<usi
     Ok(clips)
 }
 
-/// All meshes of a model at rest as one. Its texture coordinates are multiplied by `tiles`.
+/// Merges all meshes of a model at rest. The texture coordinates are multiplied by `tiles`.
 fn surface_mesh(rest: &Model, tiles: f32) -> SurfaceMesh {
     let mut all = SurfaceMesh { vertices: Vec::new(), indices: Vec::new() };
     for mesh in &rest.meshes {
@@ -334,7 +333,7 @@ fn surface_vertex(mesh: &Mesh, at: usize, tiles: f32) -> SurfaceVertex {
     }
 }
 
-/// The image or colour of a model's first material; white without materials.
+/// The image of a model's first material, or one texel of its colour; white without materials.
 fn base_color(model: &Model) -> RgbaImage {
     let material = model.meshes.iter().find_map(|mesh| model.material(mesh).ok().flatten());
     let color = material.map_or([1.0; 4], |material| material.color);

@@ -13,10 +13,10 @@ use crate::asset::Light;
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
-/// The largest number of entries of `meshes` and of `characters`.
+/// Largest number of entries of `meshes`, and of `characters`.
 const MAX_OBJECTS: usize = 256;
 
-/// The largest number of patches, and of heights of all patches together.
+/// The largest number of patches of a terrain, and the largest number of heights in all patches together.
 const MAX_PATCHES: usize = 4096;
 const MAX_HEIGHTS: u64 = 1 << 26;
 
@@ -42,7 +42,7 @@ impl SceneFile {
     ///
     /// # Errors
     /// [`InputError`] with the path of the mistake (`characters[1].scatter.count`): text that is not JSON, fields that
-    /// are unknown, missing or given twice, values of other types and out of bounds.
+    /// are unknown, missing or given twice, and values of the wrong type or out of bounds.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         let json = Json::parse(text)?;
         let root = json.at();
@@ -72,7 +72,7 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// Checks that shadows end beyond the camera's near plane.
+    /// Checks that the range of the shadow ends beyond the camera's near plane.
     fn check_shadow(&self) -> Result<(), InputError> {
         match self.shadow {
             Some(SunOptions { range, .. }) if f64::from(range) <= 1.001 * self.camera.near => {
@@ -137,7 +137,7 @@ fn terrain_recipe(at: &At<'_>) -> Result<Recipe, InputError> {
     Recipe::from_value(at.value()).map_err(|error| below(&at.path, "config", error))
 }
 
-/// The target of the heights of `recipe`, if there is one. Without a time, the morph is half way.
+/// Target heights of a morph that starts from `recipe`; `None` if the field is missing. Without a time, the morph is halfway.
 fn target(
     fields: &Fields<'_>,
     recipe: &Recipe,
@@ -160,19 +160,19 @@ fn patch(at: &At<'_>) -> Result<[i32; 2], InputError> {
     let entries = at.list(2, 2).map_err(|_| at.error("must be two whole numbers: column and row"))?;
     let mut patch = [0; 2];
     for (axis, entry) in patch.iter_mut().zip(entries) {
-        // The range is within the type's.
+        // The range fits in i32.
         *axis = entry.whole(range[0], range[1])? as i32;
     }
     Ok(patch)
 }
 
-/// Puts an error below a path; `whole` is the path of the whole value.
+/// Puts an error's path below `path`. `whole` is the path of an error about the whole value.
 pub(super) fn below(path: &str, whole: &str, error: InputError) -> InputError {
     let inner = if error.path == whole { path.to_owned() } else { format!("{path}.{}", error.path) };
     InputError { path: inner, ..error }
 }
 
-/// The light and its shadow, if it casts one.
+/// The light and its shadow; `None` if the light casts no shadow.
 fn light(at: &At<'_>) -> Result<(Light, Option<SunOptions>), InputError> {
     let fields = at.fields(&["direction", "color", "ambient", "shadow"])?;
     let otherwise = Light::default();
@@ -189,7 +189,7 @@ fn light(at: &At<'_>) -> Result<(Light, Option<SunOptions>), InputError> {
     Ok((light, fields.maybe("shadow", |at| shadow(&at))?.flatten()))
 }
 
-/// The shadow: true, false, or an object with options.
+/// The field `shadow`: true, false, or an object with options.
 fn shadow(at: &At<'_>) -> Result<Option<SunOptions>, InputError> {
     let otherwise = SunOptions::default();
     if !at.value().is_object() {
@@ -197,12 +197,12 @@ fn shadow(at: &At<'_>) -> Result<Option<SunOptions>, InputError> {
         return Ok(at.flag().map_err(|_| at.error(bound))?.then_some(otherwise));
     }
     let fields = at.fields(&["size", "range"])?;
-    // The bounds are within the type's.
+    // The bounds fit in u32.
     let size = fields.maybe("size", |at| at.whole(16, 8192))?.map_or(otherwise.size, |size| size as u32);
     Ok(Some(SunOptions { size, range: fields.number("range", 1e-3, 1e6, otherwise.range.into())? as f32 }))
 }
 
-/// Linear red, green and blue.
+/// Linear red, green and blue, each from 0 to `most`.
 fn color(at: &At<'_>, most: f64) -> Result<[f32; 3], InputError> {
     Ok(at.numbers::<3>(0.0, most)?.map(|channel| channel as f32))
 }
@@ -212,7 +212,7 @@ fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {
     let near = fields.number("near", 1e-4, 1e4, NEAR)?;
     let far = fields.maybe("far", |at| {
         let far = at.number(0.0, COORDINATE)?;
-        // Both depths are f32.
+        // Both distances are rounded to f32, so they must differ clearly.
         if far < 1.001 * near {
             return Err(at.error(format!("must be beyond near = {near}, by a thousandth at least")));
         }
@@ -242,7 +242,7 @@ fn camera(at: &At<'_>) -> Result<CameraPath, InputError> {
     Ok(CameraPath { keys, near, far })
 }
 
-/// The eye's position and the point that it looks at.
+/// A camera key without its time: the eye's position, and the point that the eye looks at.
 fn key(fields: &Fields<'_>, field_of_view: f64) -> Result<CameraKey, InputError> {
     let place = |name: &str, what: &str| {
         let at = fields.need(name, what)?;
@@ -250,7 +250,7 @@ fn key(fields: &Fields<'_>, field_of_view: f64) -> Result<CameraKey, InputError>
     };
     let (at, _) = place("at", "where the eye is: [x, y, z]")?;
     let (look, entry) = place("look", "where it looks: [x, y, z]")?;
-    // If they were nearer, rounding would decide the direction.
+    // If the two points were nearer to each other, rounding would decide the direction.
     if at.distance(look) < 1e-6 * (1.0 + at.abs().max_element()) {
         return Err(entry.error("must lie apart from at, which is where the eye is"));
     }

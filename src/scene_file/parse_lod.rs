@@ -1,4 +1,4 @@
-//! Reads `lod` of an object, and `quality`.
+//! Reads the field `lod` of an object, and the field `quality` of a scene.
 
 use glam::Vec3;
 
@@ -9,18 +9,18 @@ use crate::scene::{
 };
 use crate::shared::lod::object::{OBJECT_LEVELS, RANKS};
 
-/// The largest number of triangles of a budget.
+/// Upper limit of a triangle budget; the budget must be smaller.
 const MAX_TRIANGLES: i64 = 1 << 32;
 
-/// The largest distance, area, magnification or time.
+/// The largest distance, area, magnification or time that a file may give.
 const MOST: f64 = 1e9;
 
-/// How finely the scene is drawn, and the transition of all objects that have none of their own.
+/// How finely the scene is drawn, and the transition of objects that name no transition.
 pub(super) fn quality(at: &At<'_>) -> Result<(Quality, Transition), InputError> {
     let fields = at.fields(&["pixels", "triangles", "milliseconds", "transition"])?;
     let quality = Quality {
         pixels: fields.number("pixels", 0.0, 1e4, Quality::default().pixels.into())? as f32,
-        // The bounds are within the type's.
+        // The bounds fit in u32.
         triangles: fields.maybe("triangles", |at| at.whole(1, MAX_TRIANGLES - 1))?.map(|count| count as u32),
         milliseconds: fields.maybe("milliseconds", |at| at.number(1e-3, 1e6))?.map(|time| time as f32),
     };
@@ -64,7 +64,7 @@ pub(super) fn transition(at: &At<'_>) -> Result<Transition, InputError> {
 const FIELDS: [&str; 11] =
     ["criterion", "to", "of", "from", "below", "near", "far", "level", "hysteresis", "bias", "rank"];
 
-/// How an object's levels of detail are chosen and change. `transition` is the object's.
+/// How an object's levels of detail are chosen and change. `transition` is the object's transition.
 pub(super) fn level_of_detail(at: &At<'_>, transition: Transition) -> Result<LevelOfDetail, InputError> {
     let known: Vec<&str> = FIELDS.into_iter().chain(["motion", "periphery", "culling"]).collect();
     let fields = at.fields(&known)?;
@@ -93,7 +93,7 @@ pub(super) fn level_of_detail(at: &At<'_>, transition: Transition) -> Result<Lev
     })
 }
 
-/// The names of the criteria.
+/// Names of the criteria for levels of detail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Named {
     Error,

@@ -16,11 +16,11 @@ use crate::scene::Transition;
 use crate::surface::ReliefShadow;
 use crate::surface::relief::{MAX_SCALE, ReliefMethod};
 
-/// The largest number of instances of a mesh, and of a character, whose bones take memory.
+/// Largest number of instances of a mesh and of a character. Characters are limited further, because their bones take memory.
 const MAX_MESHES: usize = 1 << 20;
 const MAX_CHARACTERS: usize = 1 << 16;
 
-/// The largest number of seconds, and the largest playback rate.
+/// The largest start time of a clip in seconds, and the largest playback rate.
 const MAX_SECONDS: f64 = 1e6;
 const MAX_RATE: f64 = 100.0;
 
@@ -85,7 +85,7 @@ fn image(at: At<'_>) -> Result<Source, InputError> {
     source(&at, &["png", "jpg", "jpeg"], "must be a .png or .jpg file")
 }
 
-/// A built-in name, or a file with one of these endings, in lower case.
+/// The source that a string names: a built-in name, or a file with one of these endings. `endings` are in lower case.
 fn source(at: &At<'_>, endings: &[&str], bound: &str) -> Result<Source, InputError> {
     let text = at.text()?;
     if let Some(name) = text.strip_prefix(BUILT_IN) {
@@ -115,7 +115,7 @@ fn relief(at: &At<'_>) -> Result<ReliefEntry, InputError> {
     })
 }
 
-/// A character's animation; missing fields come from `otherwise`.
+/// A character's animation. Missing fields get the values of `otherwise`.
 fn play(fields: &Fields<'_>, otherwise: &PlayEntry) -> Result<PlayEntry, InputError> {
     let clip = fields.maybe("clip", |at| match at.value().is_number() {
         true => Ok(at.whole(0, i64::from(u32::MAX))?.to_string()),

@@ -1,31 +1,31 @@
-//! Pseudorandom places from a seed. The generator is counter-based, so places have the same bits on every machine.
+//! Pseudorandom positions from a seed. The generator is counter-based, so positions have the same bits on every machine.
 
 use super::entries::Scatter;
 use crate::InputError;
 use crate::hash::{LANES, key_of, threefry2x32};
 
-/// Draws per instance after which an area is refused for lack of ground.
+/// Number of random positions tried per instance. If they do not suffice, the area is refused for lack of ground.
 const DRAWS: u64 = 64;
 
-/// The place of an instance, and the other values drawn for it.
+/// Random position of an instance, and its other random values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drawn {
     pub x: f64,
-    /// The height of the ground.
+    /// The height of the ground at this position.
     pub y: f64,
     pub z: f64,
     /// The angle about the vertical axis, 0 to 2π.
     pub turn: f64,
     pub scale: f32,
-    /// The fraction of its clip that a character has played by time 0.
+    /// The fraction of the clip that the character has played by time 0.
     pub phase: f64,
 }
 
-/// Draws places in rectangles (each two corners) of one size. `height` is the height of the ground, `None` if there is
-/// none; such places are skipped.
+/// Draws random positions in rectangles of equal size, each given as two corners. `height` returns the height of the ground.
+/// Positions where it returns `None` are skipped.
 ///
 /// # Errors
-/// [`InputError`] for an area that has hardly any ground.
+/// [`InputError`] for an area with hardly any ground.
 pub(super) fn drawn(
     scatter: &Scatter,
     rectangles: &[[[f64; 2]; 2]],
@@ -57,7 +57,7 @@ fn one(
     let lanes: [u32; LANES] = std::array::from_fn(|lane| lane as u32);
     let (first, second) = threefry2x32(key, [counter; LANES], lanes);
     let fraction = |word: u32| f64::from(word) / 4_294_967_296.0;
-    // Below the number of rectangles, because fractions are below 1.
+    // The index is below the number of rectangles, because fractions are below 1.
     let [low, high] = rectangles[(fraction(second[2]) * rectangles.len() as f64) as usize];
     let between = |axis: usize, word: u32| low[axis] + fraction(word) * (high[axis] - low[axis]);
     let (x, z) = (between(0, first[0]), between(1, second[0]));
@@ -103,7 +103,7 @@ mod tests {
     }
 
     /// The bits of the first place of the seed "rocks", computed by a separate implementation of Threefry in Python.
-    /// They must not change, because other places would change users' scenes.
+    /// These bits must not change, because other positions would change users' scenes.
     const KNOWN: [u64; 2] = [0x4004_cb01_0040_0000, 0x4024_87f3_4130_0000];
 
     #[test]

@@ -1,4 +1,4 @@
-//! A scene file after reading: its contents, and the files that it names.
+//! The checked contents of a scene file, and the list of files that it names.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ use crate::terrain::config::ZoneTexture;
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
     pub(super) terrain: Option<TerrainEntry>,
-    /// The entries of `meshes`, then those of `characters`.
+    /// The entries of `meshes`, then the entries of `characters`.
     pub(super) objects: Vec<ObjectEntry>,
     pub(super) light: Light,
     pub(super) shadow: Option<SunOptions>,
@@ -28,19 +28,20 @@ pub struct SceneFile {
 pub struct SunOptions {
     /// Texels along an edge of the map, 16 to 8192.
     pub size: u32,
-    /// Distance ahead of the camera, in world units, up to which surfaces receive shadow. Beyond the near plane.
+    /// Distance ahead of the camera, in world units, up to which surfaces receive shadow. It must exceed the near plane's
+    /// distance.
     pub range: f32,
 }
 
 impl Default for SunOptions {
-    /// 2048 texels, 100 units.
+    /// A map of 2048 × 2048 texels, and a range of 100 world units.
     fn default() -> Self {
         Self { size: 2048, range: 100.0 }
     }
 }
 
 impl SceneFile {
-    /// The camera.
+    /// The camera and its path over time.
     pub fn camera(&self) -> &CameraPath {
         &self.camera
     }
@@ -50,10 +51,10 @@ impl SceneFile {
         self.quality
     }
 
-    /// The files that the scene names, relative to its own, ascending, without duplicates.
+    /// Paths of the files that the scene names, relative to the scene file, ascending, without duplicates.
     ///
-    /// A browser can fetch them before it loads the scene. The list lacks buffers, images and material libraries beside
-    /// `.gltf` and `.obj` files. `.glb` files need none.
+    /// A browser can fetch these files before it loads the scene. The list lacks the buffers, images and material libraries that
+    /// `.gltf` and `.obj` files name. `.glb` files name none.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut found = BTreeSet::new();
         let mut add = |source: &Source| {

@@ -1,4 +1,4 @@
-//! Building of the scene that a file describes.
+//! Builds the scene that a file describes.
 
 use std::sync::Arc;
 
@@ -22,32 +22,31 @@ pub struct World {
     pub scene: Scene,
     /// The scene's objects, in the order of the file: terrain, meshes, characters.
     pub objects: Vec<WorldObject>,
-    /// The camera.
+    /// The camera and its path over time.
     pub camera: CameraPath,
     /// The quality: how finely the scene is drawn.
     pub quality: Quality,
-    /// The shadow of the light, if it casts one.
+    /// The shadow of the light; `None` if the light casts no shadow.
     pub shadow: Option<SunOptions>,
-    /// The colour behind everything: linear red, green and blue.
+    /// The background colour: linear red, green and blue.
     pub background: [f32; 3],
 }
 
-/// An object of the scene, and its source.
+/// An object of the scene, and its source in the scene file.
 #[derive(Debug, Clone)]
 pub struct WorldObject {
     /// The object's handle.
     pub object: ObjectId,
     /// The object's kind.
     pub kind: WorldKind,
-    /// Terrain: the seed. Other kinds: the source as the scene file has it, a file name or `builtin:` and a
-    /// name.
+    /// The seed of a terrain. For other kinds, the source in the scene file: a file name, or `builtin:` and a name.
     pub name: String,
     /// The model of a mesh or a character, with its levels of detail.
     pub model: Option<Arc<Model>>,
 }
 
 impl WorldObject {
-    /// The model, if it is a character.
+    /// The model of a character; `None` for other kinds.
     pub fn character(&self) -> Option<&Model> {
         self.model.as_deref().filter(|_| self.kind == WorldKind::Character)
     }
@@ -71,17 +70,17 @@ impl LoadedScene {
     /// Builds the scene: adds all objects and spawns all instances. Waits until the device has generated the terrain.
     ///
     /// # Errors
-    /// [`InputError`], with the path in the scene file, for instances on the ground where there is none, and for
-    /// objects that the device cannot hold; [`crate::gpu::GpuError`].
+    /// [`InputError`], with the path in the scene file, for instances on the ground where the terrain has no patch, and for
+    /// objects that the device cannot hold; [`crate::gpu::GpuError`] for other failures of the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn build(&self, gpu: &Gpu) -> Result<World, Error> {
         gpu.block_on(self.build_async(gpu))
     }
 
-    /// As `LoadedScene::build`, but completes once the device has generated the terrain and reported its errors.
+    /// Same as `LoadedScene::build`, but completes once the device has generated the terrain and reported its errors.
     ///
     /// # Errors
-    /// As `LoadedScene::build`.
+    /// Same as `LoadedScene::build`.
     pub async fn build_async(&self, gpu: &Gpu) -> Result<World, Error> {
         let file = &self.file;
         let mut scene = Scene::new_async(gpu).await?;
@@ -111,8 +110,8 @@ impl LoadedScene {
         Ok(World { scene, objects, camera, quality, shadow: file.shadow, background })
     }
 
-    /// Sets how an object's levels of detail are chosen and change. If the object's entry names a transition, the object must
-    /// support it.
+    /// Sets how an object's levels of detail are chosen, and their transition. If the object's entry names a transition, the
+    /// object must support it.
     fn set_level_of_detail(
         &self,
         scene: &mut Scene,
@@ -192,7 +191,7 @@ impl LoadedScene {
     }
 }
 
-/// The start time of a clip that has played the fraction `phase` at the character's own start.
+/// Start time of a clip in seconds, so that the fraction `phase` of the clip has been played at the time `play.start`.
 fn begun(play: &PlayEntry, model: &Model, phase: f64) -> Result<f64, InputError> {
     let clip = model.clip(play.clip.as_deref().unwrap_or("0"))?;
     let rate = if play.rate == 0.0 { 1.0 } else { f64::from(play.rate) };
@@ -235,7 +234,7 @@ fn spawn_one(
     Ok(())
 }
 
-/// A mistake below a path in the scene file.
+/// Puts the path of an input error below a path in the scene file.
 fn below(path: &str, error: Error) -> Error {
     match error {
         Error::Input(error) => Error::Input(error.below(path)),
@@ -243,7 +242,7 @@ fn below(path: &str, error: Error) -> Error {
     }
 }
 
-/// A refused setting of levels of detail, with its path in the file: `criterion.from[0]` of `meshes[1]` is
+/// Gives the error of a level-of-detail setting its path in the scene file: `criterion.from[0]` of `meshes[1]` becomes
 /// `meshes[1].lod.from[0]`.
 fn in_file(error: InputError, entry: &str) -> InputError {
     let groups = ["criterion.", "choice.", "perceptual."];

@@ -1,9 +1,9 @@
-//! Assigns the allowed displacement of each character instance to bone gates and skinning, as bones and influences that
-//! they may leave out.
+//! Divides the allowed displacement of each character instance between bone gates and skinning. Gates may then skip bones, and
+//! skinning may leave out influences.
 //!
-//! [`select`](super::select) gives the allowed displacement, in the model's units. Fractions of it go to bones that are not
-//! sampled and to influences that fade; what they leave is for levels of detail of the mesh. [`decide`](super::decide) gives
-//! the finest level that a view draws, which is the one to skin. An instance that no view sees is neither sampled nor
+//! [`select`](super::select) gives the allowed displacement, in model units. One fraction of it goes to bones that are not
+//! sampled, and one to influences that fade out. The remainder is for levels of detail of the mesh. [`decide`](super::decide)
+//! gives the finest level that any view draws; this level is skinned. An instance that no view sees is neither sampled nor
 //! skinned.
 
 #[cfg(feature = "gpu")]
@@ -19,10 +19,10 @@ use crate::asset::influences::MAX_INFLUENCES;
 pub use crate::shared::lod::assign::AssignParams;
 
 impl AssignParams {
-    /// Checks the ranges.
+    /// Checks that all parameters are in their ranges.
     ///
     /// # Errors
-    /// [`InputError`] that names the field; `params.influence_fraction` for fractions that add up to more than 1.
+    /// [`InputError`] that names the field. If the two fractions add up to more than 1, it names `params.influence_fraction`.
     pub fn validate(&self) -> Result<(), InputError> {
         check_fraction("params.bone_fraction".to_owned(), self.bone_fraction)?;
         check_fraction("params.influence_fraction".to_owned(), self.influence_fraction)?;

@@ -9,7 +9,7 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 #[doc(inline)]
 pub use bindings::Buffers as AssignBuffers;
 
-/// Assigns allowed displacements to gates and skinning.
+/// GPU pass that divides allowed displacements between bone gates and skinning.
 #[derive(Debug, Clone)]
 pub struct AssignPass {
     kernel: Kernel,
@@ -19,15 +19,15 @@ impl AssignPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Errors of the driver's shader compiler.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the assignment for at most `instances` instances; [`AssignParams::instances`] is the actual count.
+    /// Prepares a job for at most `instances` instances. [`AssignParams::instances`] is the number in use.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers that hold fewer instances; [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers that hold fewer instances; [`GpuError`] for failures of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

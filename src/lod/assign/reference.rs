@@ -5,18 +5,18 @@ use crate::animation::{BoneSampling, Lod};
 use crate::shared::lod::assign::{FADE_STEPS, MAX_UNITS};
 use crate::skinning::instance_lod::InstanceLod;
 
-/// An instance whose level of detail is assigned.
+/// Inputs of an assignment for one instance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AssignInstance {
-    /// The displacement that the frame's views allow, in the model's units; negative if no view sees it.
+    /// Displacement that the frame's views allow, in model units; negative if no view sees the instance.
     pub allowed: f32,
-    /// The finest level that is drawn.
+    /// Finest level of detail that any view draws.
     pub finest: u32,
-    /// Whether it carries a mesh: then no bone may be off.
+    /// Whether the instance carries an attached mesh. If so, no bone may be displaced.
     pub carries: bool,
 }
 
-/// The gate's and the skinning's level of detail for an instance.
+/// Levels of detail of an instance: one for its bone gate, one for its skinning.
 pub fn assign(params: &AssignParams, instance: &AssignInstance) -> (Lod, InstanceLod) {
     let AssignInstance { allowed, finest, carries } = *instance;
     if allowed < 0.0 {
@@ -32,12 +32,12 @@ pub fn assign(params: &AssignParams, instance: &AssignInstance) -> (Lod, Instanc
     (lod, instance_lod)
 }
 
-/// The allowed displacement of bones, in units of the gate's table.
+/// Part of the allowed displacement that bones may use, in units of the gate's table.
 pub fn units(params: &AssignParams, allowed: f32) -> f32 {
     params.bone_fraction * allowed / params.unit
 }
 
-/// The allowed fade of influences, in steps.
+/// How far influences may fade, in steps: 0 (all influences) to `FADE_STEPS` (one influence).
 pub fn fade_steps(params: &AssignParams, allowed: f32) -> f32 {
     if params.stray <= 0.0 {
         return FADE_STEPS;

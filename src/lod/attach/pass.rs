@@ -5,11 +5,11 @@ use crate::Error;
 use crate::gpu::bindings::lod::attach as bindings;
 use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
 
-/// The buffers that attaching reads and writes.
+/// Buffers of the kernel that places attached meshes.
 #[doc(inline)]
 pub use bindings::Buffers as AttachBuffers;
 
-/// Places attached meshes.
+/// GPU pass that computes the placements of meshes attached to bones.
 #[derive(Debug, Clone)]
 pub struct AttachPass {
     kernel: Kernel,
@@ -19,17 +19,17 @@ impl AttachPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Errors of the driver's shader compiler.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the placements of the meshes in one view, one for each element of `attachments`. Record it after the
-    /// view's selection and the character's model matrices.
+    /// Prepares a job that places the attached meshes of one view, one for each element of `attachments`. Record the job after
+    /// the view's selection, and after the character's model matrices are computed.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for `allowed`, placements, last instances or kept bones with too few elements;
-    /// [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers with too few elements (`allowed`, placements, last instances, kept bones);
+    /// [`GpuError`] for failures of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

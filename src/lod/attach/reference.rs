@@ -6,29 +6,29 @@ use super::{AttachParams, Attachment, KeptBone};
 use crate::asset::Affine;
 use crate::lod::SceneInstance;
 
-/// The product of a mesh's bone and its offset.
+/// Transform from an attached mesh to its character's model space: the bone's model matrix times the mesh's offset.
 ///
 /// # Panics
-/// For an attachment to a bone that does not exist.
+/// If the attachment names a bone that does not exist.
 pub fn local(params: &AttachParams, attachment: &Attachment, model_matrices: &[Affine]) -> Affine {
     let bone = &model_matrices[(attachment.character * params.bones + attachment.bone) as usize];
     product(bone, &attachment.offset)
 }
 
-/// The instances of a scene, and the displacement that the frame's views allow each of them.
+/// The instances of a scene, and the displacement that the frame's views allow each instance.
 #[derive(Debug, Clone, Copy)]
 pub struct AttachScene<'a> {
-    /// The instances.
+    /// All instances of the scene.
     pub instances: &'a [SceneInstance],
-    /// What is allowed, in model units; negative for an instance that no view sees.
+    /// Allowed displacement of each instance, in model units; negative if no view sees the instance.
     pub allowed: &'a [f32],
 }
 
-/// The placement of an attached mesh: the transform from its space to the corner of a cell. `local` is the product of bone
-/// and offset.
+/// Placement of an attached mesh: transform from mesh space to the world, relative to the corner of `cell`. `local` is the
+/// product of bone and offset.
 ///
 /// # Panics
-/// For an attachment to an instance that does not exist.
+/// If the attachment names an instance that does not exist.
 pub fn attached(
     params: &AttachParams,
     attachment: &Attachment,
@@ -47,8 +47,8 @@ pub fn attached(
     product(&placement, local)
 }
 
-/// The product of bone and offset in the last frame, if it was kept; else this frame's, `local`. `kept` are the two
-/// kept products of the attachment.
+/// Product of bone and offset in the last frame, if it was kept; otherwise `local`, the product of this frame. `kept` holds the
+/// attachment's products of the last two frames.
 pub fn last_local(
     params: &AttachParams,
     attachment: &Attachment,

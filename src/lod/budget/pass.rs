@@ -7,25 +7,25 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::lod::BLOCK;
 use crate::shared::lod::budget::{BINS, FADES, FIND_BIN, FIND_PART, FINISH, PARTS};
 
-/// The buffers of a budget and of a view that shares it.
+/// Buffers of the budget kernel: those of the budget, and those of one view that shares the budget.
 #[doc(inline)]
 pub use bindings::Buffers as BudgetBuffers;
 
-/// A stage of the kernel. All views that share a budget run each of the first, third and fifth before the one that follows,
-/// which one of them runs.
+/// A stage of the kernel. Every view that shares the budget runs the first, third and fifth stage. After each of these, only one
+/// of the views runs the stage that follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BudgetStage {
-    /// Each view adds its savings to the bins.
+    /// Each view adds its savings of triangles to the bins of the first histogram.
     Bins,
-    /// One view finds the bin.
+    /// One view finds the bin at which the triangles fit.
     FindBin,
-    /// Each view adds its savings to the parts of the bin.
+    /// Each view adds its savings in that bin to the parts of the bin (second histogram).
     Parts,
-    /// One view finds the part, and writes the factors.
+    /// One view finds the part at which the triangles fit, and writes the factors.
     FindPart,
-    /// Each view adds the triangles of its fades.
+    /// Each view adds the triangles of its instances that fade, which draw two levels.
     Fades,
-    /// One view ends the fades that do not fit.
+    /// One view ends all fades if their triangles do not fit.
     Finish,
 }
 
@@ -34,24 +34,24 @@ impl BudgetStage {
     pub const EACH: [Self; 6] =
         [Self::Bins, Self::FindBin, Self::Parts, Self::FindPart, Self::Fades, Self::Finish];
 
-    /// Whether each view that shares the budget runs the stage, not one alone.
+    /// Whether every view that shares the budget runs the stage. Otherwise, only one of them does.
     pub fn is_of_each_view(self) -> bool {
         matches!(self, Self::Bins | Self::Parts | Self::Fades)
     }
 }
 
-/// Coarsens the levels of detail of views so that they fit a budget.
+/// GPU pass that coarsens the levels of detail of views so that their triangles fit a budget.
 #[derive(Debug, Clone)]
 pub struct BudgetPass {
     kernels: [Kernel; 6],
 }
 
-/// The prepared stages of a view.
+/// Prepared stages of a budget for one view.
 #[derive(Debug)]
 pub struct BudgetStages([Job; 6]);
 
 impl BudgetStages {
-    /// Adds a stage to a compute pass.
+    /// Dispatches a stage in a compute pass.
     pub fn dispatch(&self, stage: BudgetStage, pass: &mut wgpu::ComputePass<'_>) {
         self.0[stage as usize].dispatch(pass);
     }
@@ -61,7 +61,7 @@ impl BudgetPass {
     /// Compiles the pipelines.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Errors of the driver's shader compiler.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
         let [bins, find_bin, parts, find_part, fades, finish] =
@@ -78,11 +78,12 @@ impl BudgetPass {
         })
     }
 
-    /// Prepares the stages for all instances of a view, [`BLOCK`] for each element of `block_objects`. Record them between
-    /// [`select`](crate::lod::select) and [`decide`](crate::lod::decide).
+    /// Prepares the stages for all instances of a view: [`BLOCK`] instances for each element of `block_objects`. Record the
+    /// stages between [`select`](crate::lod::select) and [`decide`](crate::lod::decide).
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`] for failures of the
+    /// device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

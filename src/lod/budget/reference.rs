@@ -9,30 +9,30 @@ use crate::shared::lod::object::{
     NO_RANK, RANKS, UNSEEN_METRIC, decision_level, decision_next, decision_steps, metric_bits,
 };
 
-/// An instance in a view: its object, its metric word, and the view's decision in the last frame.
+/// Inputs of a budget for one instance in a view.
 #[derive(Debug, Clone, Copy)]
 pub struct Budgeted<'a> {
-    /// The object.
+    /// The instance's object.
     pub object: &'a LodObject,
-    /// The metric word.
+    /// Metric word of the instance, or `UNSEEN_METRIC`.
     pub metric: u32,
-    /// The decision; 0 for none.
+    /// The view's decision for the instance in the last frame; 0 for none.
     pub last: u32,
 }
 
-/// The largest pressure: every object that has a rank is at its coarsest.
+/// Largest pressure (how far a budget coarsens): every object with a rank is at its coarsest level.
 pub const MAX_PRESSURE: u32 = BIN_PARTS * ALL_BINS - 1;
 
 fn part_of(factor: f32) -> u32 {
     (factor.log2().max(0.0) * OCTAVE).ceil() as u32 + ROUNDED_PARTS
 }
 
-/// Triangles of a level, in units.
+/// Number of triangles of a level, in units of the budget.
 pub fn triangles_of(object: &LodObject, level: u32) -> u32 {
     object.triangles.as_flattened()[level as usize]
 }
 
-/// The level of an instance that counts, without a budget.
+/// Level of an instance without a budget, its metric, and the level that hysteresis holds. `None` if the instance does not count.
 fn level_of(instance: &Budgeted<'_>) -> Option<(u32, f32, u32)> {
     let Budgeted { object, metric, last } = *instance;
     let value = f32::from_bits(metric_bits(metric));
@@ -43,7 +43,8 @@ fn level_of(instance: &Budgeted<'_>) -> Option<(u32, f32, u32)> {
     Some((level_within(object, value, held), value, held))
 }
 
-/// The savings of an instance: the pressure from which on they hold, and triangles in units.
+/// Triangles that an instance saves: for each coarser level, the pressure from which on it saves, and the triangles in units of
+/// the budget.
 pub fn savings(instance: &Budgeted<'_>) -> Vec<(u32, u32)> {
     let Some((level, metric, held)) = level_of(instance) else { return Vec::new() };
     let object = instance.object;
@@ -60,13 +61,13 @@ pub fn savings(instance: &Budgeted<'_>) -> Vec<(u32, u32)> {
     all
 }
 
-/// Triangles of all instances without a budget, in units.
+/// Number of triangles of all instances without a budget, in units of the budget.
 pub fn triangles(instances: &[Budgeted<'_>]) -> u32 {
     let of = |instance: &Budgeted<'_>| Some(triangles_of(instance.object, level_of(instance)?.0));
     instances.iter().filter_map(of).sum()
 }
 
-/// The least pressure at which the instances have at most `limit` triangles; `None` if they never do.
+/// Smallest pressure at which the instances have at most `limit` triangles; `None` if even the coarsest levels have more.
 pub fn pressure(instances: &[Budgeted<'_>], limit: u32) -> Option<u32> {
     let mut left = triangles(instances);
     if left <= limit {
@@ -83,8 +84,8 @@ pub fn pressure(instances: &[Budgeted<'_>], limit: u32) -> Option<u32> {
     None
 }
 
-/// The factors and the pressure after a frame, from the pressure that it needs (`None`: the limit is missed), and from the
-/// state of the view's last frame.
+/// State of a budget after a frame: factors and pressure. `needed` is the pressure that the frame needs; `None` if the limit
+/// cannot be met. `last` is the state after the view's last frame.
 pub fn state(view: &SelectView, needed: Option<u32>, last: &BudgetState) -> BudgetState {
     let at_least = needed.unwrap_or(MAX_PRESSURE);
     let before = if view.is_next == 0 { at_least } else { last.pressure };
@@ -106,7 +107,7 @@ pub fn state(view: &SelectView, needed: Option<u32>, last: &BudgetState) -> Budg
     }
 }
 
-/// Triangles that all instances draw with the factors of a state, in units: of fades both levels.
+/// Number of triangles that all instances draw with the factors of `state`, in units of the budget. A fade counts both levels.
 pub fn drawn(view: &SelectView, instances: &[Budgeted<'_>], state: &BudgetState) -> u32 {
     let of = |instance: &Budgeted<'_>| {
         let (_, metric, _) = level_of(instance)?;

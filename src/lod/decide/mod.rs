@@ -1,8 +1,8 @@
 //! Levels of detail of the instances that a view sees.
 //!
-//! [`select`](super::select) gives each visible instance a metric. A view draws the coarsest level whose threshold the
-//! metric reaches. Thresholds depend on the level of the last frame (hysteresis), so that a metric that trembles around a
-//! threshold changes nothing. A budget scales the metric ([`budget`](super::budget)). The object's
+//! [`select`](super::select) gives each visible instance a metric. A view draws the coarsest level whose threshold the metric
+//! reaches. Thresholds depend on the level of the last frame (hysteresis), so that small changes of a metric near a threshold do
+//! not change the level. A budget scales the metric ([`budget`](super::budget)). The object's
 //! [`Transition`](super::transition::Transition) says how the level changes: the decision names the levels that are drawn.
 
 #[cfg(feature = "gpu")]

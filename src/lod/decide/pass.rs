@@ -9,7 +9,7 @@ use crate::lod::BLOCK;
 #[doc(inline)]
 pub use bindings::Buffers as DecideBuffers;
 
-/// Decides the levels of detail of a view's instances.
+/// GPU pass that decides the levels of detail of a view's instances.
 #[derive(Debug, Clone)]
 pub struct DecidePass {
     kernel: Kernel,
@@ -19,16 +19,17 @@ impl DecidePass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Errors of the driver's shader compiler.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the decisions for all instances, [`BLOCK`] for each element of `block_objects`. Record it after
+    /// Prepares a job for all instances: [`BLOCK`] instances for each element of `block_objects`. Record the job after
     /// [`select`](crate::lod::select).
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`] for failures of the
+    /// device.
     pub fn prepare(&self, gpu: &Gpu, buffers: DecideBuffers<'_>) -> Result<Job, Error> {
         let blocks = buffers.block_objects.len();
         let group = buffers.bind(gpu, &self.kernel, &bindings::Lengths { blocks })?;

@@ -5,7 +5,8 @@ use crate::lod::{BLOCK, LodObject, OBJECT_LISTS, SelectView};
 use crate::shared::lod::budget_state::BudgetState;
 use crate::shared::lod::object::{UNSEEN_METRIC, metric_bits, metric_mirrored};
 
-/// A view's decision for an instance, from its metric word and the view's decision in the last frame.
+/// A view's decision word for an instance: its level, and its progress to another level. `metric` is the instance's metric word;
+/// `last` is the view's decision in the last frame.
 pub fn decide(view: &SelectView, object: &LodObject, budget: &BudgetState, metric: u32, last: u32) -> u32 {
     if metric == UNSEEN_METRIC {
         return 0;
@@ -20,7 +21,7 @@ pub fn decide(view: &SelectView, object: &LodObject, budget: &BudgetState, metri
     decision(object, f32::from_bits(metric_bits(metric)), &circumstances)
 }
 
-/// The finest level of an instance after one more view of the frame. `before` is the value after the earlier views,
+/// Finest level of an instance after one more view of the frame. `before` is the result of the earlier views,
 /// [`UNSEEN_LEVEL`](super::UNSEEN_LEVEL) for the first view.
 pub fn finest(before: u32, decision: u32) -> u32 {
     if decision == 0 { before } else { before.min(finest_of(decision)) }
@@ -41,11 +42,11 @@ pub fn counts<'a>(decisions: &[u32], object_of: impl Fn(usize) -> Option<&'a Lod
 }
 
 impl BudgetState {
-    /// A state that coarsens nothing.
+    /// Budget state that coarsens nothing.
     pub const FREE: Self =
         Self { factors: [[1.0; 4]; 3], ends_fades: 0, is_missed: 0, triangles: 0, pressure: 0 };
 
-    /// Factor of the metric of objects with a rank.
+    /// Factor by which the budget scales the metric of objects with this rank.
     pub fn factor(&self, rank: u32) -> f32 {
         self.factors.as_flattened()[rank as usize]
     }

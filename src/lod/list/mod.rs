@@ -1,9 +1,9 @@
-//! Instance lists of a view: for each object and level of detail, a list of unmirrored instances and one of mirrored
-//! ones, in ascending order, the same on every run. Objects whose transition fades have as many lists again, for instances
-//! that fade in or out.
+//! Instance lists of a view. Each object has two lists per level of detail: one of unmirrored instances and one of mirrored
+//! instances. Their order is ascending and the same on every run. Objects whose transition fades have two more lists per level,
+//! for instances that fade in or out.
 //!
-//! [`decide`](super::decide) counts the instances of each block in each list. Prefix sums of the counts give the
-//! position at which a block begins. Inside a block the order is that of the instances, so no order depends on thread
+//! [`decide`](super::decide) counts the instances of each block in each list. Prefix sums of the counts give the position at
+//! which a block's instances begin in a list. Inside a block, instances keep their order, so the result does not depend on thread
 //! scheduling. The totals are the instance counts of the object's draws.
 
 #[cfg(feature = "gpu")]
@@ -18,7 +18,7 @@ use crate::shared::lod::object::object_flags_transition;
 use crate::shared::lod::transition::TRANSITION_DITHER;
 
 impl LodObject {
-    /// Number of the object's lists: 2 per level, and as many for instances that fade.
+    /// Number of the object's lists: 2 per level, and 2 more per level for instances that fade.
     pub fn lists(&self) -> u32 {
         if self.fades() { 4 * self.levels } else { 2 * self.levels }
     }
@@ -28,18 +28,18 @@ impl LodObject {
         object_flags_transition(self.flags) >= TRANSITION_DITHER
     }
 
-    /// Size of the object's lists in words.
+    /// Size of all lists of the object, in words.
     pub fn list_words(&self) -> u32 {
         self.lists() * self.instances
     }
 
-    /// First word of a list in a view's list buffer. The list of a level is 2 · level + mirrored; that of its instances that
-    /// fade lies 2 · levels behind.
+    /// Index of a list's first word in a view's list buffer. A level's list is 2 · level + mirrored. The list of its fading
+    /// instances comes 2 · levels later.
     pub fn list_begin(&self, list: u32) -> u32 {
         self.first_list + list * self.instances
     }
 
-    /// The index of the draw of a part and list among a view's draws.
+    /// Index of a draw among a view's draws, for one part of the object and one list.
     pub fn draw(&self, part: u32, list: u32) -> u32 {
         self.first_draw + OBJECT_LISTS * part + list
     }

@@ -11,19 +11,20 @@ use crate::shared::lod::list::{ListParams, PLACE, RUNS, SUM};
 pub struct ListBuffers<'a> {
     /// The objects. Their lists and draws must lie inside `lists` and `arguments`.
     pub objects: &'a Buffer<LodObject>,
-    /// For each block of 64 instances the index of its object, or [`NO_OBJECT`](crate::lod::NO_OBJECT).
+    /// Object index of each block of 64 instances, or [`NO_OBJECT`](crate::lod::NO_OBJECT).
     pub block_objects: &'a Buffer<u32>,
     /// Decision word per instance.
     pub decisions: &'a Buffer<u32>,
-    /// In: instance count per block and list, [`OBJECT_LISTS`] for each block. Overwritten.
+    /// In: instance count per block and list, [`OBJECT_LISTS`] counts for each block. The kernel overwrites them.
     pub counts: &'a Buffer<u32>,
-    /// Out: list entries, from [`LodObject::list_begin`] on: the index of an instance in its object, its level and steps.
+    /// Out: list entries, from [`LodObject::list_begin`] on. An entry has an instance's index in its object, its level and its
+    /// steps.
     pub lists: &'a Buffer<u32>,
-    /// The draws of all objects ([`LodObject::draw`]). Only their instance counts are written.
+    /// Out: draws of all objects ([`LodObject::draw`]). Only their instance counts are written.
     pub arguments: &'a Buffer<SceneDraw>,
 }
 
-/// Writes the instance lists of a view and the instance counts of its draws.
+/// GPU pass that writes the instance lists of a view and the instance counts of its draws.
 #[derive(Debug, Clone)]
 pub struct ListPass {
     sum: Kernel,
@@ -34,16 +35,16 @@ impl ListPass {
     /// Compiles the pipelines.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Errors of the driver's shader compiler.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
         Ok(Self { sum: kernel(SUM)?, place: kernel(PLACE)? })
     }
 
-    /// Prepares the lists of the first `object_count` objects and `blocks` blocks, in two dispatches.
+    /// Prepares a job that writes the lists of the first `object_count` objects and `blocks` blocks, in two dispatches.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers with fewer objects or blocks; [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers with fewer objects or blocks; [`GpuError`] for failures of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -3,7 +3,7 @@
 use crate::lod::transition::entries;
 use crate::lod::{LodObject, OBJECT_LISTS};
 
-/// The list entries of an object from its instances' decisions, ascending by instance.
+/// List entries of an object, computed from the decisions of its instances. Each list ascends by instance.
 ///
 /// # Panics
 /// If the object's instances are not all in `decisions`.
@@ -18,7 +18,7 @@ pub fn lists(object: &LodObject, decisions: &[u32]) -> [Vec<u32>; OBJECT_LISTS a
     lists
 }
 
-/// Exclusive prefix sums over the blocks of one object, per list, from the counts per block.
+/// For each block of one object and each list, the number of instances in the blocks before it. Input: counts per block and list.
 pub fn before_blocks(counts: &[u32]) -> Vec<u32> {
     let mut sums = [0; OBJECT_LISTS as usize];
     let mut before = Vec::with_capacity(counts.len());
@@ -59,7 +59,7 @@ mod tests {
         assert!(found[4].is_empty(), "another object's instances");
         decisions[66] = decision_word(1, 0, 1, 1, 5);
         assert_eq!(lists(&object, &decisions)[2][0], list_entry_word(2, 1, 5));
-        // Half of a dither: both levels, in the lists of those that fade.
+        // A dither halfway through: both levels are listed, each in its list of fading instances.
         decisions[66] = decision_word(1, 1, 1, 2, FADE_PROGRESS / 2);
         let found = lists(&LodObject { flags: flags(TRANSITION_DITHER), ..object }, &decisions);
         assert_eq!(found[6 + 2 + 1], [list_entry_word(2, 1, fade_word(64, 0))]);

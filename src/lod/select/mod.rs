@@ -1,4 +1,4 @@
-//! Selection: which instances of a scene a view sees, their metric, and how far they may be off.
+//! Selection: which instances of a scene a view sees, the metric of each, and its allowed displacement.
 //!
 //! A view sees an instance if all of these hold:
 //! - the instance exists and its object is shown;
@@ -6,12 +6,12 @@
 //! - it casts shadows, if the view asks for casters only;
 //! - its bounding sphere reaches into the view volume.
 //!
-//! Each of the view's cameras allows a displacement ([`LodCamera::allows`](super::LodCamera::allows)). The smallest of
-//! them, divided by the instance's largest scale, is the allowed displacement in the model's units. The minimum over the
-//! views of a frame limits gates and skinning ([`assign`](super::assign)), because all views share one pose.
+//! Each of the view's cameras allows a displacement ([`LodCamera::allows`](super::LodCamera::allows)). The smallest one, divided
+//! by the instance's largest scale, is the allowed displacement in model units. Its minimum over the views of a frame limits
+//! gates and skinning ([`assign`](super::assign)), because all views share one pose.
 //!
-//! Each camera also gives a metric, by the object's [`Criterion`](super::criterion::Criterion). The smallest of them,
-//! scaled, decides the level ([`decide`](super::decide)).
+//! Each camera also gives a metric, by the object's [`Criterion`](super::criterion::Criterion). The smallest metric, scaled by
+//! the object's factor, decides the level ([`decide`](super::decide)).
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -25,7 +25,7 @@ use crate::InputError;
 pub use crate::shared::lod::select::UNSEEN_ALLOWED;
 
 impl SelectView {
-    /// Checks the ranges.
+    /// Checks that the camera count, the mask and the planes are valid.
     ///
     /// # Errors
     /// [`InputError`] for no camera or more than [`VIEW_CAMERAS`], for a mask of more than 16 bits, and for planes that are

@@ -9,7 +9,7 @@ use crate::lod::BLOCK;
 #[doc(inline)]
 pub use bindings::Buffers as SelectBuffers;
 
-/// Selects the instances that a view sees.
+/// GPU pass that selects the instances that a view sees.
 #[derive(Debug, Clone)]
 pub struct SelectPass {
     kernel: Kernel,
@@ -19,15 +19,16 @@ impl SelectPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Errors of the driver's shader compiler.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the selection of all instances, [`BLOCK`] for each element of `block_objects`.
+    /// Prepares a job for all instances: [`BLOCK`] instances for each element of `block_objects`.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`] for failures of the
+    /// device.
     pub fn prepare(&self, gpu: &Gpu, buffers: SelectBuffers<'_>) -> Result<Job, Error> {
         let blocks = buffers.block_objects.len();
         let group = buffers.bind(gpu, &self.kernel, &bindings::Lengths { blocks })?;

@@ -14,14 +14,14 @@ use crate::shared::lod::object::{UNSEEN_METRIC, metric_word, object_flags_never_
 use crate::shared::lod::select::{MAX_MOTION, UNSEEN_ALLOWED};
 use crate::shared::lod::view::POSITION_SLACK;
 
-/// What a view sees of an instance.
+/// Result of the selection for an instance that the view sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selected {
-    /// The metric of the object's criterion, scaled.
+    /// Smallest metric of all cameras, by the object's criterion, times the object's factor.
     pub metric: f32,
-    /// The displacement that the view allows, in the model's units.
+    /// Allowed displacement of the instance in this view, in model units.
     pub allowed: f32,
-    /// The transform from the model's space to the corner of the view's cell.
+    /// Transform from model space to the world, relative to the corner of the view's cell.
     pub placement: Affine,
 }
 
@@ -41,7 +41,7 @@ pub fn is_shown(view: &SelectView, object: &LodObject, instance: &SceneInstance)
     is_alive && casts && instance_flags_mask(instance.flags) & view.mask != 0
 }
 
-/// How far a sphere reaches into the view volume; negative if it is outside.
+/// Distance by which a sphere reaches into the view volume, in world units; negative if the sphere is outside.
 pub fn depth_inside(view: &SelectView, center: Vec3, radius: f32) -> f32 {
     let lengths = center.length() + radius;
     let depth = |side: &glam::Vec4| {
@@ -50,15 +50,15 @@ pub fn depth_inside(view: &SelectView, center: Vec3, radius: f32) -> f32 {
     view.planes.iter().map(depth).fold(MAX_ALLOWED, f32::min)
 }
 
-/// Whether a view may see a sphere, with a margin of a thousandth of its radius. A device that rounds differently then
-/// shows no instance that the host did not expect.
+/// Whether a view may see a sphere, with a margin of a thousandth of its radius. The margin covers devices that round
+/// differently, so that they show no instance that the host did not expect.
 #[cfg(feature = "gpu")]
 pub(crate) fn nearly_seen(view: &SelectView, center: Vec3, radius: f32) -> bool {
     depth_inside(view, center, 1.001 * radius) >= -1e-3 * radius
 }
 
-/// What a view sees of an instance; `None` if it does not see it. `last` is the transform of the view's last frame, if the
-/// view saw the instance in it.
+/// Selects an instance for a view; `None` if the view does not see the instance. `last` is the instance's transform in the view's
+/// last frame, if the view saw the instance then.
 pub fn select(
     view: &SelectView,
     object: &LodObject,
@@ -85,7 +85,7 @@ pub fn select(
     Some(Selected { metric: (factor * least).min(MAX_METRIC), allowed, placement })
 }
 
-/// Position of a point in the picture, from the middle, in units of half the picture's height.
+/// Position of a point in the picture, relative to the middle, in units of half the picture's height.
 fn in_picture(rows: &[Vec4; 3], point: Vec3) -> Vec2 {
     let [x, y, w] = rows.map(|row| row.dot(point.extend(1.0)));
     if w > 0.0 { Vec2::new(x, y) / w } else { Vec2::splat(1e4) }
@@ -110,14 +110,14 @@ fn perceptual_factor(
     1.0 + object.motion * speed.min(MAX_MOTION) + object.periphery * now.length().min(1.0)
 }
 
-/// The metric word of a view's result for an instance.
+/// Metric word of an instance, from its selection: the metric, and whether the instance is mirrored.
 pub fn word(selected: Option<&Selected>, instance: &SceneInstance) -> u32 {
     let word = |selected: &Selected| metric_word(selected.metric.to_bits(), instance.is_mirrored().into());
     selected.map_or(UNSEEN_METRIC, word)
 }
 
-/// The allowed displacement of an instance after one more view of the frame. `before` is the value after the earlier
-/// views, `None` for the first view.
+/// Allowed displacement of an instance after one more view of the frame. `before` is the result of the earlier views, `None` for
+/// the first view.
 pub fn merged(before: Option<f32>, selected: Option<&Selected>) -> f32 {
     match (before.filter(|before| *before >= 0.0), selected) {
         (Some(before), Some(selected)) => before.min(selected.allowed),

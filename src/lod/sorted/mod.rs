@@ -1,8 +1,9 @@
 //! Draws of single instances in an order that the host chooses: transparent surfaces from back to front.
 //!
-//! The host knows neither level of detail nor visibility. So each part of each such instance has its own draw, which
-//! the device fills from [`decide`](super::decide)'s decision; it draws nothing if the view does not see the instance.
-//! Each draw has its own list with one entry, as in [`list`](super::list), which includes a morph and the weight of an instance that fades out.
+//! The host knows neither the level of detail nor the visibility of an instance. So each part of each sorted instance has its own
+//! draw, which the device fills from the decision of [`decide`](super::decide). The draw is empty if the view does not see the
+//! instance. Each draw has its own list with one entry, in the format of [`list`](super::list). The entry includes the steps of a
+//! geomorph or the weight of an instance that fades out.
 
 #[cfg(feature = "gpu")]
 mod pass;

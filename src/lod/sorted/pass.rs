@@ -9,7 +9,7 @@ use crate::shared::lod::sorted::SortedParams;
 #[doc(inline)]
 pub use bindings::Buffers as SortedBuffers;
 
-/// Writes the draws of single instances.
+/// GPU pass that writes the draws of single instances.
 #[derive(Debug, Clone)]
 pub struct SortedPass {
     kernel: Kernel,
@@ -19,15 +19,15 @@ impl SortedPass {
     /// Compiles the pipeline.
     ///
     /// # Errors
-    /// What the driver's compiler reports.
+    /// Errors of the driver's shader compiler.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the first `count` sorted draws. Record it after [`decide`](crate::lod::decide).
+    /// Prepares a job that writes the first `count` sorted draws. Record the job after [`decide`](crate::lod::decide).
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers with fewer draws; [`GpuError`].
+    /// [`InputError`](crate::InputError) for buffers with fewer draws; [`GpuError`] for failures of the device.
     pub fn prepare(&self, gpu: &Gpu, buffers: SortedBuffers<'_>, count: u32) -> Result<Job, Error> {
         let uniform = Uniform::new(gpu, "single", &SortedParams { count })?;
         let lengths = bindings::Lengths { sorted: count as usize };

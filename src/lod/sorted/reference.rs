@@ -4,11 +4,11 @@ use super::SortedDraw;
 use crate::lod::transition::sorted_entry;
 use crate::lod::{LodObject, SceneDraw};
 
-/// The draw arguments and the list entry of each of `sorted`, from the objects, the decisions of all instances and the
-/// draws of all lists.
+/// Draw arguments and list entry for each element of `sorted`. `decisions` has the decision of every instance. `arguments` has
+/// the draws of all lists.
 ///
 /// # Panics
-/// For an object that does not exist, an instance without a decision, and a decision without a draw.
+/// If an object, the decision of an instance, or the draw of a list does not exist.
 pub fn draws(
     sorted: &[SortedDraw],
     objects: &[LodObject],

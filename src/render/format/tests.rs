@@ -1,4 +1,4 @@
-//! Checks of target formats, and the attachments that pipelines write.
+//! Tests of target formats: their checks, and the attachments that pipelines write.
 
 use super::*;
 

@@ -8,12 +8,12 @@ use crate::scene::Scene;
 use crate::scene::drawable::{DrawnObject, DrawnView};
 use crate::scene::specialization::Specialization;
 
-/// The remedy for missing pipelines.
+/// The bound in the error for missing pipelines; it names the remedy.
 const PREPARE: &str = "must be compiled for this renderer: call Renderer::prepare after an object or a SunShadow was added, and \
                        after Scene::set_material or Scene::set_level_of_detail changed the object";
 
 impl Renderer {
-    /// Whether a scene is on the renderer's device.
+    /// Refuses a scene on another device than the renderer's.
     pub(super) fn check_device(&self, scene: &Scene) -> Result<(), InputError> {
         let bound = "must be of the renderer's device: Renderer::rebuild, if the scene was rebuilt";
         match scene.gpu().is_same_device(&self.gpu) {
@@ -40,7 +40,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Whether a layer of these objects can be drawn in a view.
+    /// Checks that a layer of these objects can be drawn in a view.
     pub(super) fn check<'a>(
         &self,
         view: &DrawnView<'_>,

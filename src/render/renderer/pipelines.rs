@@ -1,4 +1,4 @@
-//! The pipelines of a renderer, by their sources.
+//! Pipelines of a renderer: their keys, their sources, and their compilation.
 
 use std::borrow::Cow;
 
@@ -12,7 +12,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::{Fade, OwnDepth, Program, Specialization};
 use crate::scene::wgsl::entries::fragment_entry;
 
-/// The key of a pipeline: a part in a layer.
+/// Key of a pipeline: a part of an object, a layer, and three options.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineKey {
     layer: Layer,
@@ -26,23 +26,23 @@ pub(super) struct PipelineKey {
 }
 
 impl PipelineKey {
-    /// The key of a part without a sun's shadow.
+    /// Key of a part in a layer, without the sun's shadow and without a fade.
     pub fn new(layer: Layer, part: &Specialization, is_flipped: bool) -> Self {
         let is_flipped = is_flipped && !part.state().double_sided;
         Self { layer, part: part.clone(), is_flipped, is_shadowed: false, fade: Fade::None }
     }
 
-    /// This key with a sun's shadow, if `is_shadowed` and the layer is shaded; else without.
+    /// This key with the sun's shadow if `is_shadowed` and the layer is shaded, otherwise without it.
     pub fn shadowed(self, is_shadowed: bool) -> Self {
         Self { is_shadowed: is_shadowed && self.layer.is_shaded(), ..self }
     }
 
-    /// This key for a list of instances that fade.
+    /// This key for instances that fade in this way.
     pub fn fading(self, fade: Fade) -> Self {
         Self { fade, ..self }
     }
 
-    /// The pipeline's source for a target format. `casts`: for shadow maps, where both sides of triangles stop light.
+    /// The pipeline's source for a target format. `casts`: the target is a shadow map, where both sides of triangles stop light.
     pub fn source(&self, format: &TargetFormat, casts: bool) -> PipelineSource {
         let (layer, state) = (self.layer, self.part.state());
         let own_depth = match state.own_depth {
@@ -55,7 +55,7 @@ impl PipelineKey {
         let discards = state.cut_out || self.fade == Fade::Dither;
         let is_plain_depth = layer == Layer::Depth && !discards && !deep;
         let own = format.output().filter(|_| layer == Layer::Own);
-        // Opaque parts that fade are blended in the layer of transparent ones.
+        // Opaque parts that fade are blended in the transparent layer, with the entry point of the colour layer.
         let written = if layer == Layer::Transparent && !state.blended { Layer::Color } else { layer };
         let entry = own.map_or(written.entry(), OutputProgram::entry);
         let moves = own.map_or(layer == Layer::Velocity, OutputProgram::moves);
@@ -70,7 +70,7 @@ impl PipelineKey {
             layer,
             program: self.part.program().clone(),
             vertex: format!("{PREFIX}{vertex}"),
-            // A pipeline without a fragment stage fits no pass with colours.
+            // A pass with colour attachments needs a pipeline with a fragment stage.
             fragment: (!is_plain_depth || !format.color.is_empty()).then_some(entry),
             constants: constants.into_iter().map(|(name, value)| (name, value.to_bits())).collect(),
             // Front faces run counter-clockwise, unless flipped.
@@ -83,17 +83,17 @@ impl PipelineKey {
     }
 }
 
-/// The part of a pipeline's source that differs between the pipelines of one renderer.
+/// The source of a pipeline: everything that differs between the pipelines of one renderer.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineSource {
     layer: Layer,
     program: Program,
-    /// Entry points. There is no fragment stage where only depth is written and nothing is cut out.
+    /// Entry points. The fragment stage is `None` if only depth is written and nothing is cut out.
     vertex: String,
     fragment: Option<String>,
-    /// Override constants, as the bits of their values.
+    /// Override constants of the shader: name, and bits of the `f64` value.
     constants: Vec<(&'static str, u64)>,
-    /// The culled faces.
+    /// The faces of triangles that are culled; `None` for both sides drawn.
     cull: Option<wgpu::Face>,
 }
 
@@ -101,7 +101,7 @@ impl PipelineSource {
     /// Compiles the pipeline, with the caller's shading if there is one.
     ///
     /// # Errors
-    /// Driver compiler errors, and limits of the device that the format exceeds.
+    /// Errors of the driver's shader compiler, and of a format that exceeds the device's limits.
     pub fn compiled(
         &self,
         gpu: &Gpu,
@@ -163,7 +163,7 @@ impl PipelineSource {
     }
 }
 
-/// The only vertex buffer: for each instance of a draw, its index in the object.
+/// The only vertex buffer: the list entry of each instance of a draw, one word.
 const INSTANCES: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<u32>() as u64,
     step_mode: wgpu::VertexStepMode::Instance,

@@ -12,12 +12,12 @@ impl Rebuild for Renderer {
 }
 
 impl Renderer {
-    /// Compiles the renderer's pipelines again on another device, after its own was lost. The scene must be rebuilt on
+    /// Compiles the renderer's pipelines again on another device, after its device was lost. The scene must be rebuilt on
     /// that device too ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
     ///
     /// # Errors
     /// [`InputError`] for the caller's shading with a bind group layout, because the layout was lost with the device
-    /// ([`Renderer::rebuild_with_layout`]). Errors of the driver's compiler. In either case the renderer is unchanged.
+    /// ([`Renderer::rebuild_with_layout`]). Errors of the driver's shader compiler. After an error, the renderer is unchanged.
     pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
         if self.shading.as_ref().is_some_and(|shading| shading.layout.is_some()) {
             let bound = "must be given again, of the new device: Renderer::rebuild_with_layout";
@@ -26,12 +26,12 @@ impl Renderer {
         self.remake(gpu, self.shading.clone())
     }
 
-    /// As [`Renderer::rebuild`], with a layout of the new device for bind group 3 of the caller's shading
+    /// Same as [`Renderer::rebuild`], with a layout of the new device for bind group 3 of the caller's shading
     /// ([`Renderer::with_shading`]).
     ///
     /// # Errors
-    /// As [`Renderer::with_shading`] for the layout; [`InputError`] for a renderer without the caller's shading. The
-    /// renderer is unchanged then.
+    /// The errors of [`Renderer::with_shading`] for the layout; [`InputError`] for a renderer without the caller's shading. After
+    /// an error, the renderer is unchanged.
     pub fn rebuild_with_layout(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Result<(), Error> {
         let Some(shading) = &self.shading else {
             return Err(InputError::new("shading", "none", "must be there where a layout is given").into());

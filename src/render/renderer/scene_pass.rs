@@ -11,7 +11,7 @@ pub trait ScenePass<'a>: sealed::Sealed {
     fn set_vertex_buffer(&mut self, slot: u32, buffer: wgpu::BufferSlice<'a>);
     /// Sets the index buffer of the next draws, with `u32` indices.
     fn set_index_buffer(&mut self, buffer: wgpu::BufferSlice<'a>);
-    /// Draws indexed, with arguments from a buffer.
+    /// Draws indexed triangles, with arguments at `offset` bytes in a buffer.
     fn draw_indexed_indirect(&mut self, arguments: &'a wgpu::Buffer, offset: u64);
 }
 

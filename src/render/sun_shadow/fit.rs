@@ -1,20 +1,20 @@
-//! Placement of the sun's shadow map: around a sphere that holds what the cameras show, at whole texels of a grid that
-//! is fixed in the world. `docs/shadows.md` explains the choice.
+//! Placement of the sun's shadow map: around a sphere that contains everything that the cameras show, at whole texels of a grid
+//! that is fixed in the world. `docs/shadows.md` explains the choice.
 
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
 
 use crate::InputError;
 use crate::scene::{Camera, Depth, Placement};
 
-/// Casters count up to this many map radii from the map's center towards the light.
+/// Limit of casters: distance from the map's center towards the light, in map radii.
 const REACH: f64 = 7.0;
 
 /// Fraction of the map's radius over which shadows fade (`SHADOW_FADE` of `wgsl/render/scene_shadow.wgsl`), plus some
 /// texels.
 const FADE: f64 = 0.07;
 
-/// Number of radii per octave. Rounding to them keeps the radius constant under small changes of the projection, such
-/// as jitter.
+/// Number of permitted map radii per octave. The radius is rounded up to one of them, so that it stays constant under small
+/// changes of the projection, such as jitter.
 const STEPS: f64 = 8.0;
 
 /// Iterations of the search for the center of a sphere.
@@ -23,15 +23,15 @@ const HALVINGS: usize = 48;
 /// The eight corners of a camera's view volume up to a distance.
 #[derive(Debug, Clone)]
 pub(super) struct Frustum {
-    /// In the camera's space, so that they do not depend on its position, to the bit: four on the near plane, four at
-    /// the end.
+    /// Four corners on the near plane, then four at the far end, in camera space. There they do not depend on the camera's
+    /// position, to the bit.
     corners: [[DVec3; 4]; 2],
-    /// From the camera's space into the world.
+    /// Transform from camera space to the world.
     world_from_view: DMat4,
 }
 
 impl Frustum {
-    /// The view volume up to `range` units ahead of the camera, or to its far plane if that is nearer.
+    /// The view volume up to `range` units ahead of the camera, or up to the far plane if it is nearer.
     ///
     /// # Errors
     /// [`InputError`] for a range that ends before the near plane.
@@ -43,14 +43,14 @@ impl Frustum {
         };
         let [near, far] = if camera.depth == Depth::Reversed { [1.0, 0.0] } else { [0.0, 1.0] };
         let ahead = (place(0.0, 0.0, 0.5) - place(0.0, 0.0, near)).normalize_or(DVec3::NEG_Z);
-        // Off-axis cameras too look along the normal of the near plane.
+        // The viewing direction is the normal of the near plane, also for off-axis cameras.
         let plane = (place(1.0, 0.0, near) - place(0.0, 0.0, near))
             .cross(place(0.0, 1.0, near) - place(0.0, 0.0, near))
             .normalize_or(ahead);
         let plane = if plane.dot(ahead) < 0.0 { -plane } else { plane };
         let begin = plane.dot(place(0.0, 0.0, near));
         if range <= begin {
-            // The caller passed f32.
+            // The message shows f32, because the caller passed f32.
             let bound = format!("must be beyond the near plane, {} units ahead of the camera", begin as f32);
             return Err(InputError::new("range", range as f32, bound));
         }
@@ -77,7 +77,7 @@ pub(super) struct Fit {
 }
 
 impl Fit {
-    /// Fits a map of `size` texels around the view volumes, at least one, for a light from `direction`.
+    /// Fits a map of `size` texels an edge around at least one view volume, for a light from `direction`.
     pub fn new(frusta: &[Frustum], direction: Vec3, size: u32) -> Self {
         let (middle, radius) = sphere(frusta);
         let steps = (STEPS * libm::log2(radius / (1.0 - FADE))).ceil() / STEPS;
@@ -104,7 +104,7 @@ fn camera(axes: DMat3, middle: DVec3, radius: f64, size: u32) -> Camera {
         Vec4::W,
     );
     Camera {
-        // Casts saturate.
+        // The casts saturate.
         cell: cell.to_array().map(|axis| axis as i32),
         view_from_cell: view.as_mat4(),
         clip_from_view,
@@ -121,8 +121,8 @@ fn axes(direction: Vec3) -> DMat3 {
     DMat3::from_cols(right, towards.cross(right), towards)
 }
 
-/// The center in the world and the radius of a sphere around all corners. The center is the point between the centers
-/// of the near and the far corners where the radius is smallest.
+/// Center in the world and radius of a sphere around all corners. The center lies on the line from the mean of the near corners
+/// to the mean of the far corners, where the radius is smallest.
 fn sphere(frusta: &[Frustum]) -> (DVec3, f64) {
     let first = frusta[0].world_from_view;
     let view_from_world = first.inverse();
@@ -140,7 +140,7 @@ fn sphere(frusta: &[Frustum]) -> (DVec3, f64) {
         let farthest = near.iter().chain(&far).map(|corner| corner.distance_squared(middle));
         farthest.fold(0.0, f64::max).sqrt()
     };
-    // The radius is a convex function of the position between them.
+    // The radius is a convex function of the position on this line.
     let [mut low, mut high] = [0.0, 1.0];
     for _ in 0..HALVINGS {
         let [a, b] = [1.0 / 3.0, 2.0 / 3.0].map(|part| low + part * (high - low));

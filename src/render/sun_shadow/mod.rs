@@ -1,5 +1,5 @@
-//! The sun's shadow map (Williams 1978): depths as the sun sees the casters, fitted to what views show. The crate's and
-//! the caller's shading look it up.
+//! The sun's shadow map (Williams 1978): the depths of casters as the sun sees them, fitted to the space that the views show. The
+//! crate's shading and the caller's shading look up the map.
 
 mod fit;
 
@@ -20,15 +20,14 @@ const LEAST_SIZE: u32 = 16;
 /// The map holds the depth of the first caster that the light meets. In every frame, [`SunShadow::fit`] places it
 /// around what the views show up to a distance, and [`SunShadow::draw`] draws it.
 ///
-/// Casters are all instances that cast ([`Scene::set_casts_shadow`]) and share a bit with [`SunShadow::set_mask`]'s
-/// mask. They count also outside of the views, up to three map widths from them towards the light. Triangles stop light
-/// from both sides, reliefs with their own depth, and cut-out surfaces where they are opaque. Blended surfaces cast no
-/// shadow. All surfaces receive it: in the crate's shading, and as `Surface.sunlit` in the caller's
-/// ([`Renderer::with_shading`]).
+/// Casters are all instances that cast ([`Scene::set_casts_shadow`]) and share a bit with the mask of [`SunShadow::set_mask`].
+/// Casters outside of the views count too, up to three map widths away towards the light. Triangles stop light from both sides,
+/// reliefs with their own depth, and cut-out surfaces where they are opaque. Blended surfaces cast no shadow. All surfaces
+/// receive shadow: in the crate's shading, and as `Surface.sunlit` in the caller's shading ([`Renderer::with_shading`]).
 ///
 /// A texel covers 1/`size` of the map's width, about 1.8 `range` / `size` for a field of view of 0.8. Shadow edges are
 /// about two texels wide. A caster closer than three texels to a surface may not shade it. Shadows are stable while the
-/// camera moves and turns, because the map moves by whole texels. They shift when the light moves, and when the field
+/// camera moves and turns, because the map moves by whole texels. Shadow edges shift when the light moves, and when the field
 /// of view or `range` changes much. `docs/shadows.md` has the derivation.
 ///
 /// # Examples
@@ -70,7 +69,7 @@ impl SunShadow {
     /// the scene look up the shadow: prepare them afterwards.
     ///
     /// # Errors
-    /// [`InputError`] for a size below 16 or above the device's limit of textures; errors of the driver's compiler.
+    /// [`InputError`] for a size below 16 or above the device's limit of textures; errors of the driver's shader compiler.
     pub fn new(scene: &mut Scene, size: u32) -> Result<Self, Error> {
         let gpu = scene.gpu().clone();
         let most = gpu.device().limits().max_texture_dimension_2d;
@@ -88,10 +87,10 @@ impl SunShadow {
         Ok(Self { size, map, renderer, view })
     }
 
-    /// As [`SunShadow::new`], but completes once the device has reported its errors ([`Gpu::check_async`]).
+    /// Same as [`SunShadow::new`], but completes once the device has reported its errors ([`Gpu::check_async`]).
     ///
     /// # Errors
-    /// As [`SunShadow::new`].
+    /// Same as [`SunShadow::new`].
     pub async fn new_async(scene: &mut Scene, size: u32) -> Result<Self, Error> {
         let shadow = Self::new(scene, size)?;
         scene.gpu().check_async().await?;
@@ -101,15 +100,15 @@ impl SunShadow {
     /// Compiles the missing pipelines after objects were added to the scene ([`Renderer::prepare`]).
     ///
     /// # Errors
-    /// As [`Renderer::prepare`].
+    /// Same as [`Renderer::prepare`].
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
         self.renderer.prepare(scene)
     }
 
-    /// As [`SunShadow::prepare`], but completes once the device has reported its errors.
+    /// Same as [`SunShadow::prepare`], but completes once the device has reported its errors.
     ///
     /// # Errors
-    /// As [`Renderer::prepare`].
+    /// Same as [`Renderer::prepare`].
     pub async fn prepare_async(&mut self, scene: &Scene) -> Result<(), Error> {
         self.renderer.prepare_async(scene).await
     }
@@ -120,16 +119,16 @@ impl SunShadow {
         self.view.set_mask(mask);
     }
 
-    /// Places the map around what these views show up to `range` units ahead of their cameras, and makes the views use
-    /// it.
+    /// Places the map around everything that these views show up to `range` units ahead of their cameras. The views then use the
+    /// map.
     ///
-    /// Call it in each frame after cameras and light were set, and before [`Scene::record`]. A view with a constant
-    /// picture, such as a minimap, may be left out. [`View::clear_shadow`] removes the shadow from a view. Shadows fade
-    /// out at some distance beyond `range`. The levels of detail of casters are those that the views decide.
+    /// Call it in each frame after cameras and light were set, and before [`Scene::record`]. A view with a constant picture, such
+    /// as a minimap, may be left out. [`View::clear_shadow`] removes the shadow from a view. Shadows fade out at some distance
+    /// beyond `range`. The cameras of the views decide the levels of detail of casters.
     ///
     /// # Errors
-    /// [`InputError`] for no view or more than four, views of another scene or without a camera, and a `range` that is
-    /// not finite or not beyond a camera's near plane. Nothing changes then.
+    /// [`InputError`] for no view or more than four, views of another scene or without a camera, and a `range` that is not finite
+    /// or not beyond a camera's near plane. After an error, nothing has changed.
     pub fn fit(&mut self, scene: &Scene, views: &mut [&mut View], range: f32) -> Result<(), InputError> {
         self.view.check(scene, "shadow")?;
         if !(range > 0.0 && range.is_finite()) {
@@ -175,7 +174,7 @@ impl SunShadow {
     /// Draws the map in a pass of its own. Call it after [`Scene::record`] and before the passes that draw the views.
     ///
     /// # Errors
-    /// As [`Renderer::draw`] for the light's view; [`InputError`] for an encoder of another [`wgpu::Instance`].
+    /// The errors of [`Renderer::draw`] for the light's view; [`InputError`] for an encoder of another [`wgpu::Instance`].
     pub fn draw(&self, encoder: &mut wgpu::CommandEncoder, scene: &Scene) -> Result<(), InputError> {
         self.view.check(scene, "shadow")?;
         scene.gpu().check_encoder(encoder)?;
@@ -193,18 +192,18 @@ impl SunShadow {
             ..Default::default()
         });
         let drawn = self.renderer.draw(&mut pass, scene, &self.view, Layer::Depth);
-        // The caller knows the view by this name.
+        // The caller reaches the light's view under this name.
         drawn.map_err(|error| match error.path.as_str() {
             "view" => InputError { path: "shadow.view()".to_owned(), ..error },
             _ => error,
         })
     }
 
-    /// Creates everything anew after the device was lost and the scene was rebuilt on another one
+    /// Creates the map and all pipelines anew after the device was lost and the scene was rebuilt on another one
     /// ([`Scene::rebuild_async`]). Rebuild the views too ([`View::rebuild`]), and fit the map to them again.
     ///
     /// # Errors
-    /// As [`View::rebuild`] and [`Renderer::rebuild`]; [`GpuError`].
+    /// The errors of [`View::rebuild`] and [`Renderer::rebuild`]; [`GpuError`] for other failures of the device.
     pub fn rebuild(&mut self, scene: &Scene) -> Result<(), Error> {
         let map = created(scene.gpu(), self.size)?;
         self.view.rebuild(scene)?;

@@ -1,4 +1,4 @@
-//! Every kind of pipeline compiles for every kind of target, and draws into passes and bundles of it.
+//! Every kind of pipeline compiles for every kind of target, and draws into render passes and bundles of that target.
 
 use glam::Vec3;
 use wgpu::TextureFormat as Format;
@@ -15,7 +15,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::{PartState, Program, Specialization};
 use crate::surface::{Green, ReliefMethod, ReliefOptions, ReliefShadow};
 
-/// Parts that cover every entry point and both values of every flag. Reliefs have a method.
+/// Parts that cover every entry point and both values of every flag. For reliefs, the method is given too.
 fn parts() -> Vec<(Option<ReliefMethod>, Specialization)> {
     let flags = || [false, true].into_iter();
     let states = flags().flat_map(|cut_out| {
@@ -71,7 +71,7 @@ fn every_kind_of_pipeline_compiles_for_every_format() {
     for format in formats() {
         let renderer = Renderer::new(&gpu, &format).expect("a format");
         for layer in format.layers() {
-            // One format is enough for all methods. Only meshes are ever blended.
+            // Reliefs are tested with all methods in one format only. Only meshes can be blended.
             let parts = parts().into_iter().filter(|(method, part)| match layer {
                 Layer::Transparent => *part.program() == Program::Mesh,
                 _ => method.is_none_or(|method| format.samples == 4 || method == ReliefMethod::Quadtree),
@@ -91,7 +91,7 @@ fn every_kind_of_pipeline_compiles_for_every_format() {
 #[test]
 fn what_the_device_does_not_allow_of_a_format_is_refused_by_name() {
     let gpu = gpu();
-    // Formats of 32-bit floats can neither be blended nor multisampled.
+    // Formats of 32-bit floats allow no blending and no multisampling.
     let blended = wgpu::ColorTargetState {
         format: Format::Rgba32Float,
         blend: Some(wgpu::BlendState::ALPHA_BLENDING),

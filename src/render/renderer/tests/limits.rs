@@ -9,7 +9,7 @@ use crate::scene::kind::KindProgram;
 use crate::scene::program::LEAST;
 use crate::scene::specialization::Program;
 
-/// Bindings of a stage by class, and inter-stage locations.
+/// Resource use of a shader stage: bindings by class, and inter-stage locations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 struct Taken {
     storage: usize,
@@ -27,11 +27,11 @@ impl Taken {
     }
 }
 
-/// The most that vertex and fragment stages may use; the rest is left to the caller.
+/// The largest resource use of vertex and fragment stages. Everything above is left to the caller.
 const VERTEX: Taken = Taken { storage: 8, uniforms: 4, textures: 0, samplers: 0, locations: 7 };
 const FRAGMENT: Taken = Taken { storage: 4, uniforms: 4, textures: 5, samplers: 3, locations: 7 };
 
-/// The number of locations that a type takes: one for each member, or one.
+/// Number of inter-stage locations that a type takes: one per member of a struct, one for other types.
 fn locations(module: &Module, ty: naga::Handle<naga::Type>) -> usize {
     match &module.types[ty].inner {
         TypeInner::Struct { members, .. } => {
@@ -97,7 +97,7 @@ fn every_kind_stays_within_its_part_of_the_limits_in_every_output() {
     let least = Taken { storage: 3, uniforms: 2, textures: 1, samplers: 1, locations: 7 };
     let own = taken(KindProgram::least().expect("valid").text());
     assert!(own.iter().all(|(_, _, taken)| taken.is_within(&least)), "{own:?}");
-    // The documented use is the actual one: a larger one would keep bindings from the caller.
+    // The documented numbers are exact, because larger ones would keep bindings from the caller.
     assert_eq!((largest[0].storage, largest[0].locations), (VERTEX.storage, VERTEX.locations));
     assert_eq!((largest[1].textures, largest[1].samplers), (FRAGMENT.textures, FRAGMENT.samplers));
     // A kind that uses one resource too many is detected.

@@ -1,4 +1,4 @@
-//! Meshes look as the CPU reference draws them: textured, cut out, mirrored, from both sides.
+//! Meshes look like the CPU reference's pictures: textured, cut out, mirrored, from both sides.
 
 use glam::{Mat4, Vec3};
 use image::{Rgba, RgbaImage};
@@ -47,10 +47,10 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
     model
 }
 
-/// The object that a stage draws.
+/// The object that a test stage draws.
 pub const OBJECT: SceneObject = SceneObject { first_instance: 64, number: 1, ..NO_OBJECT };
 
-/// The model's first mesh. Its instances have their own vertices, in pages in reverse order.
+/// The model's first mesh. Its instances have their own skinned vertices, in 64-vertex pages in reverse order.
 pub fn mesh(gpu: &Gpu, layouts: &SceneLayouts, model: &Model, instances: usize) -> (MeshDrawable, u32) {
     let (buffers, clusters) = MeshBuffers::new(gpu, model, &model.meshes[0]).expect("uploaded");
     let material = &model.materials[0];

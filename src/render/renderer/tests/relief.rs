@@ -44,7 +44,7 @@ impl Maps {
     }
 }
 
-/// The default light as a relief material.
+/// A relief material with the default light.
 fn material(plane: f32) -> ReliefMaterial {
     let light = Light::default();
     ReliefMaterial {
@@ -55,7 +55,7 @@ fn material(plane: f32) -> ReliefMaterial {
     }
 }
 
-/// A square of relief as an object.
+/// A square with a relief, as an object.
 pub fn square(
     gpu: &Gpu,
     layouts: &SceneLayouts,
@@ -67,7 +67,7 @@ pub fn square(
     mesh_of(gpu, layouts, (maps, options), (&mesh, 1.0 / TILES), plane)
 }
 
-/// A mesh; a uv unit has a given length in model units.
+/// A mesh with a relief. One uv unit has the given length in model units.
 fn mesh_of(
     gpu: &Gpu,
     layouts: &SceneLayouts,
@@ -112,7 +112,7 @@ pub fn place(scale: Vec3) -> Mat4 {
     Mat4::from_rotation_x(-0.7) * Mat4::from_scale(scale)
 }
 
-/// The square in world space, scaled and placed as the instance.
+/// The square in world space, with the scale and the placement of the instance.
 fn placed(scale: f32) -> SurfaceMesh {
     let into = place(Vec3::ONE);
     let mut mesh = SurfaceMesh::square(TILES);

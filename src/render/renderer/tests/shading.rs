@@ -1,4 +1,4 @@
-//! Surface colour against a closed form: Lambert's law with normal maps, tints, coloured light, mirrored placements and
+//! Compares surface colours with a closed form: Lambert's law with normal maps, tints, coloured light, mirrored placements and
 //! back faces.
 
 use glam::{Mat4, Vec3, Vec4};
@@ -24,8 +24,8 @@ use crate::srgb;
 /// A texel of the normal map that points to the right and down the image.
 const BUMP: [u8; 4] = [200, 40, 230, 255];
 
-/// A model without meshes and with two materials, a plain one and one with a scaled normal map of another size than the
-/// texture.
+/// A model without meshes and with two materials. The first is plain. The second has a scaled normal map, whose size differs from
+/// the texture's.
 fn model() -> Model {
     let mut model = creature().expect("valid");
     model.images = vec![
@@ -52,7 +52,7 @@ fn square(gpu: &Gpu, layouts: &SceneLayouts, double_sided: bool) -> MeshDrawable
     square_of(gpu, layouts, &mut model(), double_sided)
 }
 
-/// The same square in another model, with the second of its two materials.
+/// A square as in [`square`], but of another model, with the second of the model's two materials.
 fn square_of(gpu: &Gpu, layouts: &SceneLayouts, model: &mut Model, double_sided: bool) -> MeshDrawable {
     let corners = [[-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
     let vertex = |[x, y]: [f32; 2]| Vertex {
@@ -89,7 +89,7 @@ fn seen(from_behind: bool, light: Vec3) -> SceneView {
     view
 }
 
-/// The expected colour of the normal-mapped material. `frame` is its tangent space in world axes.
+/// The expected colour of the normal-mapped material. `frame` is the tangent space in world axes.
 fn expected(frame: [Vec3; 3], light: Vec3, tint: [f32; 3]) -> [u8; 4] {
     let texel = [0, 1, 2].map(|axis| f32::from(BUMP[axis]) / 255.0 * 2.0 - 1.0);
     // Green points up the image; v points down.
@@ -109,7 +109,7 @@ fn a_bumpy_square_has_the_colors_of_the_closed_form() {
     let light = Vec3::new(0.3, 0.5, 0.9);
     let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z];
     let turned = Mat4::from_rotation_z(0.5);
-    // The placement, whether it is seen from behind, and its tangent space on the visible side.
+    // Placement, whether it is seen from behind, and the expected tangent space on the visible side.
     let cases = [
         (Mat4::IDENTITY, false, [x, -y, z]),
         (turned, false, [turned.transform_vector3(x), turned.transform_vector3(-y), z]),
@@ -135,7 +135,7 @@ fn a_bumpy_square_has_the_colors_of_the_closed_form() {
         let wanted = expected(frame, light, [1.0; 3]);
         let far = middle.iter().zip(wanted).any(|(found, wanted)| found.abs_diff(wanted) > 1);
         assert!(!far, "{placement} {from_behind}: {middle:?}, not {wanted:?}");
-        // The test distinguishes the opposite direction of green.
+        // The test would fail if green pointed in the opposite direction.
         let other = expected([frame[0], -frame[1], frame[2]], light, [1.0; 3]);
         assert!(wanted.iter().zip(other).any(|(a, b)| a.abs_diff(b) > 4), "{wanted:?} {other:?}");
     }

@@ -1,4 +1,4 @@
-//! A scene of one object and one view, and a canvas.
+//! Helpers of the renderer's tests: a scene of one object and one view, and a canvas to draw on.
 
 use glam::{Mat4, Vec3, Vec4, camera};
 
@@ -52,7 +52,7 @@ pub fn through(clip_from_world: Mat4, eye: Vec4) -> SceneView {
     }
 }
 
-/// The data that kernels would have written for a view of one object. Its instances are the scene's second block.
+/// The data that kernels would have written for a view of one object. The object's instances are the scene's second block.
 pub struct Stage {
     view: SceneView,
     group: Group,
@@ -185,10 +185,10 @@ pub fn differing(a: &[[u8; 4]], b: &[[u8; 4]], levels: u8) -> usize {
     a.iter().zip(b).filter(|pair| far(*pair)).count()
 }
 
-/// Clear value of all [`FORMAT`] colours but the first, and its texels.
+/// Clear value of all [`FORMAT`] colours except the first, as a colour and as texels.
 const OTHER: (wgpu::Color, [u8; 4]) = (wgpu::Color { r: 1.0, g: 0.0, b: 1.0, a: 0.0 }, [255, 0, 255, 0]);
 
-/// The attachments of a target format.
+/// Textures for the attachments of a target format.
 pub struct Canvas {
     colors: Vec<Option<wgpu::Texture>>,
     resolved: wgpu::Texture,
