@@ -34,7 +34,7 @@ impl FeatureFile {
     /// Reads a feature file from JSON text.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not valid JSON or has other fields.
+    /// [`InputError`] for text that is not valid JSON or does not match the fields of [`FeatureFile`].
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         from_json_object("features", text)
     }
@@ -42,7 +42,7 @@ impl FeatureFile {
     /// Reads a feature file from disk.
     ///
     /// # Errors
-    /// [`Error::File`] when the file cannot be read; [`Error::InputFile`] when it is not valid JSON or has other fields.
+    /// [`Error::File`] when the file cannot be read; [`Error::InputFile`] for the errors of [`FeatureFile::from_json`].
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         Self::from_json(&read_text(path)?)
             .map_err(|source| Error::InputFile { path: path.to_owned(), source })
