@@ -90,7 +90,7 @@ impl Cobbles {
     }
 }
 
-/// Smooth minimum: less than both arguments if they differ by less than [`ROUNDING`], otherwise the smaller argument.
+/// Smooth minimum: less than both arguments if they differ by less than `ROUNDING`, otherwise the smaller argument.
 fn smooth_minimum(a: f64, b: f64) -> f64 {
     let overlap = (ROUNDING - (a - b).abs()).max(0.0) / ROUNDING;
     a.min(b) - 0.25 * ROUNDING * overlap * overlap
