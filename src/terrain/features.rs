@@ -105,7 +105,7 @@ impl Features {
     /// Adds the points of one file. Call [`Features::check`] after the last file.
     ///
     /// # Errors
-    /// As [`Features::new`].
+    /// [`InputError`] as [`Features::new`].
     pub fn add(&mut self, config: &TerrainConfig, file: &FeatureFile) -> Result<(), InputError> {
         let patch = file.patch_coordinates;
         // A patch that no window can have is refused, because its features would never be used.

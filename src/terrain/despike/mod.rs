@@ -27,7 +27,7 @@ impl Despike {
         finite("despike.threshold", self.threshold, 0.0, 16383.0)
     }
 
-    /// Threshold τ in 1/65536 units.
+    /// Threshold τ as an integer, in 1/65536 height units.
     pub fn fixed_threshold(&self) -> i32 {
         (self.threshold * HEIGHT_ONE).round_ties_even() as i32
     }

@@ -54,7 +54,7 @@ impl HeightBatch {
     /// Sets the patches and features for the next recordings. Patches fill the parts of the batch in order.
     ///
     /// # Errors
-    /// As [`HeightJob::set`].
+    /// The errors of [`HeightJob::set`].
     pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
         let mut rest = patches;
         for (job, fields) in self.jobs.iter().zip(&self.fields) {
