@@ -1,7 +1,7 @@
-//! Composes every shader of `kernels/` and `wgsl/render/` (but for modules) with WESL and validates the flat result with naga.
-//! Writes it to `OUT_DIR`, with a manifest of entry points, bindings, override constants and structs, and the
-//! modules for shaders outside the crate. An unknown import, an unused binding or an invalid shader fails the
-//! build with file and line.
+//! Builds all shaders of the crate. WESL composes every shader of `kernels/` and `wgsl/render/` (except modules) into one flat
+//! text, and naga validates that text. The results go to `OUT_DIR`: the flat shaders, a manifest of their entry points, bindings,
+//! override constants and structs, and the modules for shaders outside the crate. An unknown import, an unused binding or an
+//! invalid shader fails the build with file and line.
 
 #[path = "build/modules.rs"]
 mod modules;
@@ -70,10 +70,10 @@ mod shaders {
         std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
     }
 
-    /// The root of what the texts of callers' kinds stand beside, which is generated.
+    /// Path of a generated module, the scene core. It imports everything that the shader of a caller's kind of object needs.
     const CORE: &str = "wgsl/render/scene_core.wgsl";
 
-    /// Writes what the texts of callers' kinds stand beside, and checks it with the least kind.
+    /// Writes the scene core, to which callers' kinds of objects are added at run time. Validates it with a minimal kind.
     fn write_core(root: &Path, core: &str, out: &Path, manifest: &mut String) {
         let files = output_files(root);
         let (outputs, _) = outputs(&files, root, true);
@@ -99,8 +99,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         .expect("a string");
     }
 
-    /// Writes the modules for shaders outside the crate: `module.wgsl` of a folder, with everything that it
-    /// imports.
+    /// Writes the modules for shaders outside the crate. A module is the file `module.wgsl` of a folder, with all of its imports.
     fn write_modules(root: &Path, out: &Path, manifest: &mut String) {
         let mut all = Vec::new();
         for file in shader_files(&root.join("wgsl")) {
@@ -109,7 +108,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
             }
             let folder = file.parent().and_then(|folder| folder.file_name()).expect("below wgsl/");
             let name = folder.to_string_lossy().into_owned();
-            // WESL checks that every import exists.
+            // This composition is only a check: WESL reports imports that do not exist.
             Shader::compose(root, &file, name.clone(), Keep::All);
             let source = modules::joined(root, &file);
             let module = Shader::validated(root, &file, name.clone(), source);
@@ -128,20 +127,21 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         .expect("a string");
     }
 
-    /// Whether a file of WGSL declares a kind of object, whose entry points are generated.
+    /// Whether a WGSL file declares a kind of object. The entry points of such a file are generated.
     pub fn is_kind(file: &Path) -> bool {
         let text = std::fs::read_to_string(file).unwrap_or_default();
         KindText::declared(&text).unwrap_or_else(|why| refuse(file, &why)).is_some()
     }
 
-    /// The files of outputs, with their texts.
+    /// The WGSL files that declare outputs, each with its text.
     pub fn output_files(root: &Path) -> Vec<(PathBuf, String)> {
         let files = shader_files(&root.join("wgsl/render")).into_iter();
         let read = |file: PathBuf| (file.clone(), std::fs::read_to_string(file).unwrap_or_default());
         files.map(read).filter(|(_, text)| text.contains("\n// output ")).collect()
     }
 
-    /// The outputs of all kinds, and the imports of what their entry points use.
+    /// The outputs that all files declare, and the import lines that the outputs' entry points need. Without `blends`, the output
+    /// `transparent` is left out.
     fn outputs(files: &[(PathBuf, String)], root: &Path, blends: bool) -> (Vec<OutputText>, String) {
         let (mut all, mut imports) = (Vec::new(), String::new());
         for (file, text) in files {
@@ -157,7 +157,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         (all, imports)
     }
 
-    /// The root of a kind's shader: its entry points, with what these import.
+    /// WGSL text with the generated entry points of a kind, and the imports that these entry points need.
     fn kind_root(root: &Path, relative: &Path, kind: &KindText<'_>) -> String {
         let files = output_files(root);
         let (outputs, imports) = outputs(&files, root, kind.blends);
@@ -188,7 +188,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         files
     }
 
-    /// Refuses bindings of modules that no shader uses.
+    /// Fails the build if a module declares a binding that no shader uses.
     fn refuse_unused_module_bindings(root: &Path, shaders: &[Shader]) {
         for file in shader_files(&root.join("wgsl")) {
             for name in declared_bindings(root, &file) {
@@ -200,22 +200,22 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         }
     }
 
-    /// The declarations that stay in a composed shader.
+    /// Which declarations stay in a composed shader.
     #[derive(Clone, Copy, PartialEq)]
     enum Keep {
-        /// Those that entry points reach.
+        /// Only declarations that an entry point uses, directly or indirectly.
         Entries,
-        /// Those, and all that the file itself declares.
+        /// Declarations that an entry point uses, and all declarations of the root file.
         Root,
-        /// All, also those of imported modules.
+        /// All declarations, including those of imported modules.
         All,
     }
 
-    /// Composes a file with what it imports.
+    /// Composes a file and all of its imports into one flat text.
     fn flatten(root: &Path, file: &Path, keep: Keep, mangler: wesl::ManglerKind) -> String {
         let relative = file.strip_prefix(root).expect("below the root");
         let mut compiler = wesl::Wesl::new(root).set_custom_resolver(sources(root));
-        // Eager: an unused import must exist too.
+        // Not lazy, so that unused imports are also checked for existence.
         compiler.set_options(wesl::CompileOptions {
             lazy: false,
             strip: keep != Keep::All,
@@ -231,7 +231,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
         }
     }
 
-    /// All files of WGSL, with their packed words.
+    /// Resolver with all WGSL files. Packed words and the entry points of kinds are expanded in it.
     fn sources(root: &Path) -> wesl::VirtualResolver<'static> {
         let mut resolver = wesl::VirtualResolver::new();
         for file in ["kernels", "wgsl"].iter().flat_map(|folder| shader_files(&root.join(folder))) {
@@ -257,15 +257,15 @@ import package::wgsl::render::scene_view::view;
         resolver
     }
 
-    /// `package::wgsl::lod::object` of `wgsl/lod/object.wgsl`.
+    /// WESL path of a WGSL file: `package::wgsl::lod::object` for `wgsl/lod/object.wgsl`.
     fn module_path(relative: &Path) -> wesl::ModulePath {
         let path = format!("package::{}", relative.with_extension("").display()).replace('/', "::");
         path.parse().expect("a module path")
     }
 
-    /// Names of the bindings that a file itself declares.
+    /// Names of the bindings that a file declares itself, without imported ones.
     fn declared_bindings(root: &Path, file: &Path) -> Vec<String> {
-        // Mangling changes the names of imports only, which distinguishes them from the file's own.
+        // Only imported names are mangled, so a name that occurs in the file belongs to the file.
         let flat = flatten(root, file, Keep::Root, wesl::ManglerKind::Escape);
         let module = naga::front::wgsl::parse_str(&flat)
             .unwrap_or_else(|error| refuse(file, &error.emit_to_string(&flat)));
@@ -276,7 +276,7 @@ import package::wgsl::render::scene_view::view;
             .collect()
     }
 
-    /// The line that declares `name`, counted from 1; 0 if none does.
+    /// Number of the line that declares `name`, counted from 1; 0 if no line declares it.
     fn line_of(file: &Path, name: &str) -> usize {
         let source = std::fs::read_to_string(file).unwrap_or_default();
         let declares = |line: &str| {
@@ -301,8 +301,7 @@ import package::wgsl::render::scene_view::view;
     impl Shader {
         fn compose(root: &Path, file: &Path, name: String, keep: Keep) -> Self {
             let relative = file.strip_prefix(root).expect("below the root");
-            // Without mangling the flat shader reads like its sources; naga reports a clash of names as an
-            // error.
+            // Names are not mangled, so that the flat shader reads like its sources. If two names clash, naga reports an error.
             let flat = flatten(root, file, keep, wesl::ManglerKind::None);
             let flat = format!("// relievo {name}: generated from {}\n\n{flat}", relative.display());
             let shader = Self::validated(root, file, name, flat);
@@ -310,7 +309,7 @@ import package::wgsl::render::scene_view::view;
             shader
         }
 
-        /// The information of naga about a flat shader.
+        /// Parses and validates a flat shader with naga. An invalid shader fails the build.
         fn validated(root: &Path, file: &Path, name: String, flat: String) -> Self {
             let relative = file.strip_prefix(root).expect("below the root");
             let module = naga::front::wgsl::parse_str(&flat).unwrap_or_else(|error| {
@@ -328,17 +327,18 @@ import package::wgsl::render::scene_view::view;
             Self { name, flat, module, info }
         }
 
-        /// What the names of its override constants begin with where it is published.
+        /// Prefix of the override constants' names in the published shader; empty if the shader takes no shading of the caller.
         pub fn prefix(&self) -> &'static str {
             if self.takes_shading() { prefix::PREFIX } else { "" }
         }
 
-        /// Whether the caller's shading may replace a part of it.
+        /// Whether the caller may replace the shader's function `shade`.
         fn takes_shading(&self) -> bool {
             self.module.functions.iter().any(|(_, function)| function.name.as_deref() == Some("shade"))
         }
 
-        /// The shader as it is compiled: if it takes the caller's shading, all of its names are prefixed.
+        /// The shader in the form that is compiled at run time. If the caller may replace `shade`, all of the crate's names get a
+        /// prefix.
         fn published(self, root: &Path, file: &Path) -> Self {
             match self.takes_shading() {
                 true => Self::validated(root, file, self.name.clone(), prefix::prefixed(&self.flat)),
@@ -346,8 +346,8 @@ import package::wgsl::render::scene_view::view;
             }
         }
 
-        /// WESL strips what no entry point reaches, so a binding that the root file declares and the flat
-        /// shader lacks is unused.
+        /// Fails the build if the root file declares an unused binding. WESL strips unused declarations, so such a binding is
+        /// missing in the flat shader.
         fn refuse_unused_bindings(&self, root: &Path, file: &Path) {
             for name in declared_bindings(root, file) {
                 if !self.uses(&name) {
@@ -356,7 +356,7 @@ import package::wgsl::render::scene_view::view;
             }
         }
 
-        /// Whether an entry point uses a binding of this name.
+        /// Whether an entry point uses a binding with the given name.
         fn uses(&self, name: &str) -> bool {
             self.module.global_variables.iter().any(|(handle, variable)| {
                 let here = variable.binding.is_some() && variable.name.as_deref() == Some(name);
@@ -365,7 +365,7 @@ import package::wgsl::render::scene_view::view;
             })
         }
 
-        /// The shader's name as a Rust constant.
+        /// Name of the Rust constant for this shader, such as `TERRAIN_HEIGHT` for `terrain/height`.
         pub fn constant(&self) -> String {
             self.name.replace('/', "_").to_uppercase()
         }
@@ -411,7 +411,7 @@ import package::wgsl::render::scene_view::view;
             text
         }
 
-        /// The vertex attributes of a vertex entry point.
+        /// Vertex attributes of a vertex entry point, as Rust text.
         fn inputs(&self, function: &naga::Function) -> String {
             let mut inputs = Vec::new();
             for argument in &function.arguments {
@@ -451,7 +451,7 @@ import package::wgsl::render::scene_view::view;
             self.module.to_ctx().type_to_string(ty)
         }
 
-        /// Its bindings; `core` is what the texts of callers' kinds stand beside.
+        /// Bindings of the shader as (group, binding, Rust text). `core` is the text of the scene core.
         fn bindings(&self, core: &str) -> Vec<(u32, u32, String)> {
             let mut found = Vec::new();
             for (handle, variable) in self.module.global_variables.iter() {
@@ -481,7 +481,7 @@ import package::wgsl::render::scene_view::view;
                     .collect::<Vec<_>>();
                 stages.dedup();
                 let name = variable.name.as_deref().unwrap_or_default();
-                // All kinds share the layout of the view, and the caller's may use it in either stage.
+                // All kinds of objects share the layout of the view's bind group, and a caller's kind may use it in either stage.
                 let own = name.strip_prefix(self.prefix()).unwrap_or(name);
                 let of_core =
                     core.lines().any(|line| line.starts_with("var") && line.contains(&format!(" {own}:")));
@@ -497,7 +497,7 @@ import package::wgsl::render::scene_view::view;
             found
         }
 
-        /// Whether a sampler reads the texture, and not only texel loads.
+        /// Whether a sampler reads the texture. Textures that are only read by `textureLoad` give false.
         fn is_sampled(&self, texture: naga::Handle<naga::GlobalVariable>) -> bool {
             (0..self.module.entry_points.len()).any(|entry| {
                 self.info.get_entry_point(entry).sampling_set.iter().any(|key| key.image == texture)
@@ -525,8 +525,8 @@ import package::wgsl::render::scene_view::view;
         }
     }
 
-    /// The source line from which a line of the flat shader comes: the one whose text it starts with, spaces
-    /// aside. WESL writes a statement of several lines as one, so the longest match wins.
+    /// Source file and line from which a line of the flat shader comes. WESL writes a statement of several lines as one line.
+    /// Therefore the longest source line with which the flat line starts is taken, ignoring spaces.
     fn origin(root: &Path, flat: &str, line: usize) -> String {
         let squeeze = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
         let flat_line =

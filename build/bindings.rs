@@ -1,8 +1,8 @@
-//! Generates the Rust that shaders and host share from the composed WGSL: structs and constants, and for every
-//! shader its override constants and the resources of each bind group, by name and type.
+//! Generates Rust from the composed WGSL: structs and constants that shaders and host share. For every shader it also generates
+//! the override constants, and the resources of each bind group by name and type.
 //!
-//! `shared.rs` needs no graphics library. It has one module per WGSL file, with the constants of that file and
-//! its structs that lie in buffers. `bindings.rs` needs the feature `gpu` and has one module per shader.
+//! `shared.rs` needs no graphics library. It has one module per WGSL file, with the file's constants and the structs that lie in
+//! buffers. `bindings.rs` needs the feature `gpu` and has one module per shader.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -14,11 +14,11 @@ use crate::shaders::{Shader, is_kind, output_files, refuse};
 use crate::sources::Sources;
 use crate::types::{Use, constant_text, literal_text, scalar_name};
 
-/// A WGSL file's structs and constants as Rust, by name.
+/// Structs and constants of a WGSL file as Rust text, by name.
 pub type Items = BTreeMap<String, String>;
 
-/// The generated modules: those of `shared.rs`, by the path of their WGSL file without `kernels/` or `wgsl/`,
-/// and those of `bindings.rs`.
+/// The generated modules. `shared` has the modules of `shared.rs` by the path of their WGSL file, without `kernels/` or `wgsl/`.
+/// `shaders` has the modules of `bindings.rs` by the name of their shader.
 #[derive(Default)]
 pub struct Bindings {
     shared: BTreeMap<String, Items>,
@@ -26,7 +26,7 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// Adds the items that a shader shares with the host.
+    /// Adds the module of a shader, and the structs and constants that the shader shares with the host.
     pub fn add(&mut self, root: &Path, file: &Path, shader: &Shader) {
         let mut sources = Sources::of(root, file);
         if is_kind(file) {
@@ -43,7 +43,7 @@ impl Bindings {
         self.shaders.insert(shader.name.clone(), text);
     }
 
-    /// Writes `shared.rs` and `bindings.rs`.
+    /// Writes `shared.rs` and `bindings.rs` to the folder `out`.
     pub fn write(&self, out: &Path) {
         let shared = nested(&self.shared.iter().map(|(path, items)| (path.clone(), joined(items))).collect());
         std::fs::write(out.join("shared.rs"), shared).expect("OUT_DIR is writable");
@@ -55,7 +55,7 @@ fn joined(items: &Items) -> String {
     items.values().map(String::as_str).collect::<Vec<_>>().join("\n")
 }
 
-/// Modules given as `domain/file` and text, as nested Rust modules.
+/// Nests modules, given as path `domain/file` and text, into Rust modules.
 fn nested(modules: &BTreeMap<String, String>) -> String {
     let mut text = String::new();
     let mut domain = "";
@@ -75,15 +75,15 @@ fn nested(modules: &BTreeMap<String, String>) -> String {
     if domain.is_empty() { text } else { text + "}\n" }
 }
 
-/// A doc comment, or `fallback` if there is no comment.
+/// Formats a comment as a Rust doc comment; without a comment it uses `fallback`.
 pub fn doc(indent: &str, comment: &[&str], fallback: &str) -> String {
     let lines = if comment.is_empty() { vec![fallback] } else { comment.to_vec() };
-    // Links would not resolve from the generated module.
+    // Intra-doc links are turned into plain code, because they would not resolve in the generated module.
     let plain = |line: &&str| line.replace("[`", "`").replace("`]", "`");
     lines.iter().map(|line| format!("{indent}/// {}\n", plain(line))).collect()
 }
 
-/// A shader whose bindings are written.
+/// A shader for which bindings are generated, with its sources.
 pub struct ShaderBindings<'a> {
     pub root: &'a Path,
     file: &'a Path,
@@ -96,7 +96,7 @@ impl ShaderBindings<'_> {
         refuse(self.file.strip_prefix(self.root).unwrap_or(self.file), what)
     }
 
-    /// The constants that the shader uses, from all its files.
+    /// Adds the constants that the shader uses, each to the module of its WGSL file.
     fn constants(&self, shared: &mut BTreeMap<String, Items>) {
         let module = &self.shader.module;
         for (_, constant) in module.constants.iter() {
@@ -109,7 +109,7 @@ impl ShaderBindings<'_> {
         }
     }
 
-    /// The shader's module of `bindings.rs`.
+    /// Text of the shader's module in `bindings.rs`.
     fn module(&self, shared: &mut BTreeMap<String, Items>) -> String {
         let mut text = String::from("use crate::gpu::bind::prelude::*;\n\n");
         text += &self.overrides();
@@ -180,12 +180,13 @@ impl ShaderBindings<'_> {
         )
     }
 
-    /// Whether it computes, and does not draw.
+    /// Whether the shader is a compute kernel, not a shader that draws.
     fn is_kernel(&self) -> bool {
         self.shader.module.entry_points.iter().any(|entry| entry.stage == naga::ShaderStage::Compute)
     }
 
-    /// Resources of a bind group: `Group`, or `Buffers` where lengths are checked, which leaves `params` to the pass.
+    /// Struct with the resources of a bind group. Its name is `Group`. If the shader has `// length` comments, the name is
+    /// `Buffers`, lengths are checked, and the pass provides `params`.
     fn group(
         &self,
         group: u32,
@@ -245,7 +246,7 @@ impl ShaderBindings<'_> {
         )
     }
 
-    /// The counts that give the least lengths of the shader's buffers, as a struct.
+    /// Struct with the counts from which the least lengths of the shader's buffers are computed.
     fn lengths(&self) -> String {
         let counts = self.length_counts();
         if counts.is_empty() {
@@ -261,7 +262,7 @@ impl ShaderBindings<'_> {
         )
     }
 
-    /// The names of all counts in the shader's `// length` comments.
+    /// Names of all counts that the shader's `// length` comments mention.
     fn length_counts(&self) -> BTreeSet<String> {
         let module = &self.shader.module;
         let names = (module.global_variables.iter()).filter_map(|(_, variable)| variable.name.as_deref());
@@ -269,7 +270,7 @@ impl ShaderBindings<'_> {
         lengths.flat_map(|length| self.count(length.count).1).collect()
     }
 
-    /// A `// length` comment as Rust, and the counts that it names.
+    /// Converts the formula of a `// length` comment to Rust. Also returns the counts that the formula mentions.
     fn count(&self, text: &str) -> (String, BTreeSet<String>) {
         let mut counts = BTreeSet::new();
         let words = text.split(' ').map(|word| {
@@ -299,7 +300,7 @@ impl ShaderBindings<'_> {
         }
     }
 
-    /// The type of a binding's field, and how the field is bound.
+    /// Rust type of a binding's field, and the expression that binds the field.
     fn bound(
         &self,
         variable: &naga::GlobalVariable,

@@ -1,31 +1,31 @@
-//! Generates the entry points with which a kind of object is drawn into outputs, as WGSL: at build time for the crate's own
-//! kinds, and at run time for those of callers.
+//! Generates WGSL entry points that draw a kind of object into render outputs. For the crate's own kinds this happens at build
+//! time; for callers' kinds it happens at run time.
 //!
-//! A kind exports `mesh_place`, `mesh_surface` and, unless it moves as a rigid body, `mesh_last_position`
-//! (`wgsl/render/scene_kind.wgsl`). The crate's own say with a line such as `// kind mesh: blends` what their parts
-//! may need. An output exports a struct of its targets and a function: `SurfaceTargets` and
+//! A kind `mesh` exports the WGSL functions `mesh_place`, `mesh_surface` and, unless it moves as a rigid body,
+//! `mesh_last_position` (`wgsl/render/scene_kind.wgsl`). The crate's own kinds declare their properties in a line such as `//
+//! kind mesh: blends`. An output `surface` exports a struct of render targets, `SurfaceTargets`, and a function
 //! `surface_write(Surface) -> SurfaceTargets`.
 
 use std::fmt::Write as _;
 
-/// What the parts of a kind may need.
+/// A kind of object: its name, and which features its parts may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct KindText<'a> {
-    /// What the names of its exports begin with.
+    /// Name of the kind, which is the prefix of the WGSL functions that it exports.
     pub name: &'a str,
-    /// Whether parts may be blended with what is behind them.
+    /// Whether parts of such objects may be alpha-blended with the background.
     pub blends: bool,
-    /// Whether parts may write `Surface.depth`.
+    /// Whether parts of such objects may write their own depth, `Surface.depth`.
     pub deep: bool,
-    /// Whether it exports `last_position`; else it moves with its instances alone.
+    /// Whether the kind exports `last_position`. If not, objects of this kind only move rigidly with their instances.
     pub moves: bool,
 }
 
 impl<'a> KindText<'a> {
-    /// The kind that a text declares, if it declares one.
+    /// Reads the kind that a WGSL text declares with a line `// kind NAME: PROPERTIES`; `None` if there is no such line.
     ///
     /// # Errors
-    /// The word that is no property of a kind.
+    /// A message for a line without a colon or with an unknown property.
     pub fn declared(text: &'a str) -> Result<Option<Self>, String> {
         let Some(line) = text.lines().find_map(|line| line.strip_prefix("// kind ")) else { return Ok(None) };
         let (name, properties) = line.split_once(':').ok_or("// kind NAME: needs a colon")?;
@@ -41,21 +41,22 @@ impl<'a> KindText<'a> {
     }
 }
 
-/// An output of surfaces. `depth`, which needs no surface of parts that are drawn whole, is generated beside these.
+/// An output: a set of render targets that receive the surfaces of fragments. The output `depth` is not among them. Its entry
+/// points are generated separately, because depth alone needs no surface unless fragments are discarded.
 #[derive(Debug, Clone)]
 pub struct OutputText {
-    /// What the names of its exports begin with.
+    /// Name of the output, which is the prefix of the WGSL items that it exports.
     pub name: String,
-    /// What the names of its entry points begin with.
+    /// Prefix of the names of the output's entry points.
     pub entry: String,
-    /// The declarations of the colours in the struct of its targets, in order: attribute, name and type.
+    /// Members of the output's struct of targets, in order; each text has attribute, name and type.
     pub members: Vec<String>,
-    /// Whether it needs `Surface.last_position`.
+    /// Whether the output needs the position in the last frame, `Surface.last_position`.
     pub moves: bool,
 }
 
 impl OutputText {
-    /// An output of the crate's, whose targets a text declares.
+    /// Creates one of the crate's outputs. `text` is WGSL that declares the output's struct of targets.
     pub fn new(name: &str, text: &str, moves: bool) -> Self {
         let head = format!("struct {} {{", targets_of(name));
         let (_, rest) = text.split_once(&head).expect("an output declares its targets");
@@ -64,16 +65,17 @@ impl OutputText {
         Self { name: name.to_owned(), entry: name.to_owned(), members: members.collect(), moves }
     }
 
-    /// An output of the caller's. Its entry points have names of their own, so that it may be called as one of the crate's.
+    /// Creates an output of the caller. Its entry points get the prefix `own_`, so that it may have the name of one of the
+    /// crate's outputs.
     #[allow(dead_code)] // build.rs has none
     pub fn own(name: &str, members: Vec<String>, moves: bool) -> Self {
         Self { name: name.to_owned(), entry: format!("own_{name}"), members, moves }
     }
 
-    /// The outputs that a text declares, with lines such as `// output velocity: moves`.
+    /// Reads all outputs that a WGSL text declares with lines such as `// output velocity: moves`.
     ///
     /// # Errors
-    /// The word that is no property of an output.
+    /// A message for an unknown property of an output.
     pub fn declared(text: &str) -> Result<Vec<Self>, String> {
         let lines = text.lines().filter_map(|line| line.strip_prefix("// output "));
         let output = |line: &str| match line.split_once(": ") {
@@ -84,44 +86,44 @@ impl OutputText {
         lines.map(output).collect()
     }
 
-    /// The struct of its targets.
+    /// Name of the output's struct of targets.
     pub fn targets(&self) -> String {
         targets_of(&self.name)
     }
 
-    /// The names of the members of that struct.
+    /// Names of the members of the output's struct of targets.
     fn member_names(&self) -> impl Iterator<Item = &str> {
         self.members.iter().filter_map(|member| member.split(':').next()?.split_whitespace().last())
     }
 }
 
-/// The struct of an output's targets: `UvTargets` of `uv`.
+/// Name of an output's struct of targets, such as `UvTargets` for the output `uv`.
 pub fn targets_of(name: &str) -> String {
     let (first, rest) = name.split_at(1);
     format!("{}{rest}Targets", first.to_uppercase())
 }
 
-/// The name of the fragment entry of an output: for parts that discard (cut out, or dithered), and for those that write their
-/// own depth.
+/// Name of an output's fragment entry point. `discards`: fragments may be discarded (cut-outs or dithering). `deep`: the part
+/// writes its own depth.
 pub fn fragment_entry(output: &str, discards: bool, deep: bool) -> String {
     format!("{output}{}{}", if discards { "_cut" } else { "" }, if deep { "_deep" } else { "" })
 }
 
-/// The names that the entries of a kind use of its own text.
+/// Names of the WGSL functions of a kind that the kind's entry points call.
 pub fn exports(kind: &KindText<'_>) -> [String; 3] {
     ["place", "last_position", "surface"].map(|name| format!("{}_{name}", kind.name))
 }
 
-/// What a caller's kind stands beside: `core`, the flat text of everything that entry points use, with the entry points of the
-/// outputs that it has. All names but the caller's have the prefix of the crate.
+/// WGSL text to which a caller's kind is added. It has `core`, the flat text of everything that entry points use, and the kind's
+/// entry points for `outputs`, given as (name, needs motion). All names except the caller's get the crate's prefix.
 pub fn composed(kind: &KindText<'_>, core: &str, outputs: &[(&str, bool)]) -> String {
     let output = |(name, moves): &(&str, bool)| OutputText::new(name, core, *moves);
     let outputs: Vec<_> = outputs.iter().map(output).collect();
     super::prefix::prefixed_with(&super::prefix::prefixed(core), &entries(kind, &outputs), &exports(kind))
 }
 
-/// The entry points of a kind: `vertex`, `vertex_moving` with the last position, `vertex_depth` with the position alone, and
-/// the fragment entries of `depth` and of each output.
+/// WGSL text of all entry points of a kind. Vertex entries are `vertex`, `vertex_moving` (adds the position in the last frame)
+/// and `vertex_depth` (position only). Fragment entries are those of `depth` and of each output.
 pub fn entries(kind: &KindText<'_>, outputs: &[OutputText]) -> String {
     let name = kind.name;
     let mut text = String::new();
@@ -186,7 +188,7 @@ fn depth() {{}}
     text
 }
 
-/// The fragment entries of an output, for every part that a kind may have.
+/// WGSL text of all fragment entry points of an output, one for each combination of features that parts of the kind may use.
 pub fn fragments(kind: &KindText<'_>, output: &OutputText) -> String {
     let mut text = String::new();
     for deep in [false, true].into_iter().filter(|deep| kind.deep || !deep) {
@@ -196,7 +198,7 @@ pub fn fragments(kind: &KindText<'_>, output: &OutputText) -> String {
     text
 }
 
-/// A fragment entry of an output.
+/// WGSL text of one fragment entry point of an output.
 fn fragment(kind: &KindText<'_>, output: &OutputText, discards: bool, deep: bool) -> String {
     let entry = fragment_entry(&output.entry, discards, deep);
     let (seen, discard) = (seen(kind.name, output.moves), if discards { DISCARD } else { "" });
@@ -217,7 +219,7 @@ fn fragment(kind: &KindText<'_>, output: &OutputText, discards: bool, deep: bool
     )
 }
 
-/// The line that gets the surface of a fragment.
+/// WGSL statement that evaluates the kind's surface function for a fragment.
 fn seen(kind: &str, moves: bool) -> String {
     let last = if moves { "in.last" } else { "in.position" };
     format!(
@@ -230,10 +232,10 @@ fn seen(kind: &str, moves: bool) -> String {
 
 const ARGUMENTS: &str = "in: Varyings, @builtin(front_facing) is_front: bool";
 
-/// After everything that needs derivatives.
+/// WGSL that discards a fragment. It must come after everything that needs derivatives.
 const DISCARD: &str = "    if surface.alpha < surface.cutoff || is_left_out(in.words.w, in.clip.xy) {\n        discard;\n    }\n";
 
-/// What every vertex hands over. Pipelines of one view give equal bits.
+/// Members that every vertex entry outputs. `@invariant` makes all pipelines of a view compute the same bits of the position.
 const VARYINGS: &str = "
     @invariant @builtin(position) clip: vec4<f32>,
     @location(0) position: vec3<f32>,
@@ -243,6 +245,6 @@ const VARYINGS: &str = "
     @location(4) values: vec4<f32>,
     @location(5) @interpolate(flat) words: vec4<u32>,";
 
-/// What vertices of outputs with motion hand over besides.
+/// Additional member that vertex entries output if the render output needs motion.
 const MOVING: &str = "
     @location(6) last: vec3<f32>,";

@@ -1,11 +1,11 @@
-//! Joins modules for shaders outside the crate: the files of a folder of `wgsl/`, with everything that they
-//! import, as one text that needs no WESL and keeps its comments.
+//! Joins modules for shaders outside the crate. A module consists of a folder's file `module.wgsl` and all of its imports. The
+//! joined text needs no WESL, and it keeps the comments.
 
 use std::path::{Path, PathBuf};
 
 use crate::packed::expanded;
 
-/// The text of a module: its root, then what it imports, each file once.
+/// Text of a module: the root file, then every imported file once.
 pub fn joined(root: &Path, file: &Path) -> String {
     let mut files = vec![file.to_owned()];
     let mut text = String::new();
@@ -34,7 +34,7 @@ fn add(files: &mut Vec<PathBuf>, file: PathBuf) {
     }
 }
 
-/// The file of `package::wgsl::folder::file::name;`, or with several names in braces.
+/// File of an import such as `package::wgsl::folder::file::name;`. The import may also list several names in braces.
 fn imported_file(root: &Path, importing: &Path, import: &str) -> PathBuf {
     let path = (import.trim_end().strip_suffix(';'))
         .and_then(|import| import.strip_prefix("package::")?.rsplit_once("::"))
@@ -44,7 +44,7 @@ fn imported_file(root: &Path, importing: &Path, import: &str) -> PathBuf {
     root.join(path).with_extension("wgsl")
 }
 
-/// The reason why a shader cannot be put before other shaders, if there is one.
+/// Reason why a module's text cannot be put before other shaders; `None` if it can.
 pub fn unfit(module: &naga::Module) -> Option<String> {
     let bound = module.global_variables.iter().find(|(_, variable)| variable.binding.is_some());
     let entry = module.entry_points.first().map(|entry| entry.name.as_str());

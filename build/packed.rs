@@ -1,10 +1,11 @@
-//! Words of several fields, from comments such as `// packed Decision: list 8, morph 12`: the lowest field first, with its
-//! width in bits. WGSL and Rust get `decision_word(list, morph)`, which packs, and `decision_list(word)` and
-//! `decision_morph(word)`. Widths beyond 32 bits are refused, and so are, on the host, values beyond their field.
+//! Words that pack several fields. They are declared by comments such as `// packed Decision: list 8, morph 12`, which give each
+//! field's width in bits, lowest field first. In WGSL and in Rust, `decision_word(list, morph)` packs a word, and
+//! `decision_list(word)` and `decision_morph(word)` read its fields. A sum of widths above 32 bits fails the build. On the host,
+//! a value that exceeds its field panics.
 
 use std::fmt::Write as _;
 
-/// A word and its fields: name, first bit, width.
+/// A packed word: its name, and the name, first bit and width of every field.
 pub struct Packed<'a> {
     pub name: String,
     comment: &'a str,
@@ -23,18 +24,18 @@ impl Field<'_> {
     }
 }
 
-/// The words of a WGSL file.
+/// Packed words that a WGSL file declares.
 ///
 /// # Errors
-/// Why a comment is refused.
+/// The reason why a declaration is invalid.
 pub fn packed(text: &str) -> Result<Vec<Packed<'_>>, String> {
     text.lines().filter_map(|line| line.strip_prefix("// packed ")).map(Packed::parse).collect()
 }
 
-/// The text with the WGSL of its packed words at its end, so that lines keep their numbers.
+/// Appends the WGSL functions of a file's packed words to the file's text. They come last, so that line numbers stay the same.
 ///
 /// # Errors
-/// As [`packed`].
+/// The reason why a declaration is invalid, as for [`packed`].
 pub fn expanded(text: String) -> Result<String, String> {
     let words: String = packed(&text)?.iter().map(Packed::wgsl).collect();
     Ok(text + &words)
@@ -59,7 +60,7 @@ impl<'a> Packed<'a> {
         Ok(Self { name: snake(name), comment, fields })
     }
 
-    /// The fields of `word`, packed; `suffix` is that of literals.
+    /// Expression that packs all fields into a word. `suffix` is the suffix of integer literals: `u` in WGSL, empty in Rust.
     fn packed(&self, suffix: &str) -> String {
         self.list(" | ", |field| match field.first {
             0 => field.name.to_owned(),
@@ -67,7 +68,8 @@ impl<'a> Packed<'a> {
         })
     }
 
-    /// A field of `word`.
+    /// Expression that reads a field from the variable `word`. `suffix` is the suffix of integer literals: `u` in WGSL, empty in
+    /// Rust.
     fn unpacked(field: &Field<'_>, suffix: &str) -> String {
         let value = match field.first {
             0 => "word".to_owned(),
@@ -99,7 +101,7 @@ impl<'a> Packed<'a> {
         text
     }
 
-    /// The functions in Rust, by name.
+    /// Rust functions that pack the word and read its fields, as (name, text).
     pub fn rust(&self) -> Vec<(String, String)> {
         let (name, comment) = (&self.name, self.comment);
         let arguments = self.list(", ", |field| format!("{}: u32", field.name));
@@ -129,7 +131,7 @@ impl<'a> Packed<'a> {
     }
 }
 
-/// `ListEntry` as `list_entry`.
+/// Converts a name in camel case to snake case: `ListEntry` to `list_entry`.
 fn snake(name: &str) -> String {
     let mut text = String::new();
     for (at, letter) in name.char_indices() {

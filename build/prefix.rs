@@ -1,27 +1,27 @@
-//! Renames what a flat shader declares at module scope, so that the caller's own text can stand beside it.
+//! Renames all declarations of a flat shader at module scope, so that they cannot clash with names in a caller's text.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// What the names of the crate begin with in shaders to which the caller's text is added.
+/// Prefix of the crate's names in shaders to which a caller's text is added.
 pub const PREFIX: &str = "relievo_";
 
-/// The names that the caller's text uses or replaces.
+/// Names that stay without a prefix, because the caller's text uses or replaces them.
 const KEPT: &[&str] = &["Surface", "View", "shade"];
 
-/// The function that the caller's text replaces.
+/// Start of the function that the caller's text may replace.
 const REPLACED: &str = "fn shade(";
 
-/// The text with all names of module scope prefixed, but for those that the caller's text knows, and with the function
-/// that this text replaces at its end.
+/// Adds the prefix to all names of module scope except those in `KEPT`. Moves the function that the caller may replace to the
+/// end of the text.
 pub fn prefixed(flat: &str) -> String {
     let text = replaced_last(flat);
     let names = declared(&text, &words(&text)).into_iter().filter(|name| !KEPT.contains(name));
     renamed(&text, &names.collect())
 }
 
-/// A text that was prefixed, with more before the function that may be replaced: written with the names that the text had
-/// before, which get the prefix too, but for names that stay as they are.
+/// Inserts `more` into a prefixed text, before the function that the caller may replace. `more` uses the names without prefix;
+/// they get the prefix here. Names in `kept` stay without prefix.
 pub fn prefixed_with(prefixed: &str, more: &str, kept: &[String]) -> String {
     let (ours, replaced) = prefixed.split_at(prefixed.rfind(REPLACED).unwrap_or(prefixed.len()));
     format!("{ours}\n{}\n{replaced}", prefixed_behind(prefixed, more, kept))
@@ -33,7 +33,7 @@ fn prefixed_behind(prefixed: &str, more: &str, kept: &[String]) -> String {
     renamed(more, &names.filter(|name| !kept.iter().any(|kept| kept == name)).collect())
 }
 
-/// The text with the prefix before these names, where they are no names of members.
+/// Adds the prefix to every occurrence of the given names, except where the name denotes a member or an attribute.
 fn renamed(text: &str, names: &BTreeSet<&str>) -> String {
     let words = words(text);
     let mut out = String::with_capacity(text.len() + 8 * words.len());
@@ -49,14 +49,14 @@ fn renamed(text: &str, names: &BTreeSet<&str>) -> String {
     out + &text[end..]
 }
 
-/// The text with the function that may be replaced at its end.
+/// Moves the function that the caller may replace to the end of the text.
 fn replaced_last(flat: &str) -> String {
     let Some(start) = flat.find(REPLACED) else { return flat.to_owned() };
     let end = flat[start..].find("\n}").map_or(flat.len(), |end| start + end + 2);
     format!("{}{}\n\n{}\n", &flat[..start], flat[end..].trim_start(), &flat[start..end])
 }
 
-/// The names that a text without comments declares at module scope, each with its range.
+/// Positions of the names that a text declares at module scope, as byte ranges. The text must not contain comments.
 #[allow(dead_code)] // build.rs needs it only inside `prefixed`
 pub fn declarations(text: &str) -> Vec<Range<usize>> {
     let start = text.as_ptr() as usize;
@@ -64,22 +64,22 @@ pub fn declarations(text: &str) -> Vec<Range<usize>> {
     declared(text, &words(text)).into_iter().map(range).collect()
 }
 
-/// The names that a text without comments declares at module scope.
+/// Names that a text declares at module scope. The text must not contain comments.
 #[allow(dead_code)] // build.rs needs it only inside `prefixed`
 pub fn declared_names(text: &str) -> Vec<String> {
     declarations(text).into_iter().map(|range| text[range].to_owned()).collect()
 }
 
-/// An identifier or a keyword.
+/// An identifier or a keyword in a WGSL text.
 struct Word {
     range: Range<usize>,
-    /// Whether it names a member, an attribute or an attribute's value: nothing of module scope.
+    /// Whether the word is a member, an attribute or an attribute's value. Such a word never names a declaration of module scope.
     is_local: bool,
-    /// The number of braces around it.
+    /// Number of braces that are open at the word; 0 at module scope.
     depth: usize,
 }
 
-/// The words of a shader without comments.
+/// All identifiers and keywords of a WGSL text.
 fn words(text: &str) -> Vec<Word> {
     let bytes = text.as_bytes();
     let is_part =
@@ -120,7 +120,7 @@ fn words(text: &str) -> Vec<Word> {
     words
 }
 
-/// The names that are declared at module scope.
+/// Names that a text declares at module scope. `words` are the words of the text.
 fn declared<'a>(text: &'a str, words: &[Word]) -> Vec<&'a str> {
     let mut names = Vec::new();
     for (at, word) in words.iter().enumerate().filter(|(_, word)| word.depth == 0 && !word.is_local) {
@@ -128,7 +128,7 @@ fn declared<'a>(text: &'a str, words: &[Word]) -> Vec<&'a str> {
         if !["fn", "struct", "const", "override", "alias", "var"].contains(&keyword) {
             continue;
         }
-        // An address space stands between `var` and its name.
+        // `var` may be followed by an address space in angle brackets. The name comes after it.
         let bracket = text[word.range.end..].trim_start().starts_with('<');
         let from =
             if bracket { text[word.range.end..].find('>').map_or(0, |end| word.range.end + end) } else { 0 };

@@ -1,4 +1,4 @@
-//! The WGSL files that a shader is composed of, as text: which of them declares a name, and the comments above it.
+//! The WGSL source files of a shader as text. They tell which file declares a name, and give the comments above declarations.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::packed::{Packed, packed};
 use crate::shaders::refuse;
 
-/// The files of which a shader is composed, its own first.
+/// Path and text of all files from which a shader is composed. The shader's own file comes first.
 pub struct Sources(Vec<(PathBuf, String)>);
 
 impl Sources {
@@ -16,7 +16,7 @@ impl Sources {
         found
     }
 
-    /// Adds a file, with what it imports.
+    /// Adds a file and, recursively, all files that it imports.
     pub fn follow(&mut self, root: &Path, file: &Path) {
         if self.0.iter().any(|(known, _)| known == file) {
             return;
@@ -28,7 +28,7 @@ impl Sources {
             .filter_map(|path| {
                 let names = path.trim_end_matches(';').split("::").map(str::trim);
                 let mut file = root.to_path_buf();
-                // The last one or two names are items; the longest prefix that is a file counts.
+                // An import ends with one or two names of items. The path before them is the file.
                 names.filter(|name| !name.starts_with('{')).find_map(|name| {
                     file.push(name);
                     let module = file.with_extension("wgsl");
@@ -40,7 +40,7 @@ impl Sources {
         imports.iter().for_each(|file| self.follow(root, file));
     }
 
-    /// The file that declares `name`, the text before its name, and the comment above it.
+    /// Finds the declaration of `name` after `keyword`, such as `const` or `struct`, with the comment above it.
     pub fn declaring(&self, keyword: &str, name: &str) -> Option<Declaration<'_>> {
         self.0.iter().find_map(|(file, text)| {
             let mut comment = Vec::new();
@@ -59,7 +59,7 @@ impl Sources {
         })
     }
 
-    /// The packed words of all files, with the path of their module. Refuses a comment that declares none.
+    /// Packed words that all files declare, each with its module's path. An invalid declaration fails the build.
     pub fn packed(&self, root: &Path) -> Vec<(String, Packed<'_>)> {
         let mut all = Vec::new();
         for (file, text) in &self.0 {
@@ -69,14 +69,14 @@ impl Sources {
         all
     }
 
-    /// The comment above the binding of that name, and its `// length…: …` line.
+    /// Comment above the binding with the given name, and the binding's `// length` line.
     pub fn binding_comment(&self, name: &str) -> (Vec<&str>, Option<Length<'_>>) {
         let marks = [format!("> {name}:"), format!(" {name}:")];
         for (_, text) in &self.0 {
             let mut comment = Vec::new();
             for line in text.lines() {
                 if line.starts_with("@group") && marks.iter().any(|mark| line.contains(mark.as_str())) {
-                    // Other bindings, of modules, have their numbers in comments.
+                    // In modules, comments give the bindings' numbers; such comments are left out.
                     comment.retain(|words: &&str| !words.starts_with("Binding "));
                     let length = comment.iter().find_map(|words| Length::parse(words));
                     comment.retain(|words| Length::parse(words).is_none());
@@ -92,12 +92,13 @@ impl Sources {
     }
 }
 
-/// The least length of a storage buffer, from `// length: 3 * instances` or, where the caller knows the buffer by another
-/// name, `// length of crowd.weights: instances * targets`.
+/// Least length of a storage buffer, from a comment such as `// length: 3 * instances`. If the caller knows the buffer by another
+/// name, the form is `// length of crowd.weights: instances * targets`.
 pub struct Length<'a> {
-    /// What errors call the buffer, if not by the binding's name.
+    /// Name of the buffer in errors; `None` for the binding's own name.
     pub path: Option<&'a str>,
-    /// Number of elements: products and sums of counts (lower case) and constants of the shader (upper case).
+    /// Formula for the number of elements. It consists of products and sums of counts (lower case), numbers, and the shader's
+    /// constants (upper case).
     pub count: &'a str,
 }
 
@@ -109,14 +110,14 @@ impl<'a> Length<'a> {
     }
 }
 
-/// `domain/file`, or `file`.
+/// Path of a WGSL file's module: the file's path without its top folder and extension, such as `domain/file`.
 fn module_of(root: &Path, file: &Path) -> String {
     let relative = file.strip_prefix(root).expect("below the root").with_extension("");
     let path = relative.display().to_string();
     path.split_once('/').map_or(path.clone(), |(_, rest)| rest.to_owned())
 }
 
-/// Where a struct or a constant is declared.
+/// The place where a struct or a constant is declared.
 pub struct Declaration<'a> {
     file: &'a Path,
     text: &'a str,
@@ -125,19 +126,19 @@ pub struct Declaration<'a> {
 }
 
 impl Declaration<'_> {
-    /// `domain/file`, or `file`.
+    /// Path of the module that declares the item, such as `domain/file`.
     pub fn module(&self, root: &Path) -> String {
         module_of(root, self.file)
     }
 
-    /// Whether a member is aligned to 16 bytes by an attribute, of which the host's layout must know.
+    /// Whether a member has the attribute `@align(16)`, which the layout on the host must follow.
     pub fn aligns(&self, field: &str) -> bool {
         let lines = self.text.lines().map(str::trim);
         let mut aligned = lines.filter(|line| line.starts_with("@align(16)"));
         aligned.any(|line| line.contains(&format!(" {field}:")))
     }
 
-    /// The comments above the members of a struct, in order.
+    /// Comments above the members of a struct, by member name.
     pub fn members(&self) -> BTreeMap<String, Vec<&str>> {
         let mut members = BTreeMap::new();
         let mut comment = Vec::new();

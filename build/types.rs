@@ -1,4 +1,4 @@
-//! WGSL's types and constants as Rust.
+//! Converts WGSL types and constants to Rust.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -8,7 +8,7 @@ use naga::{Handle, Literal, Scalar, ScalarKind, StructMember, Type, TypeInner, V
 use crate::bindings::{Items, ShaderBindings, doc};
 
 impl ShaderBindings<'_> {
-    /// The element type of a storage buffer.
+    /// Rust type of an element of a storage buffer.
     pub fn element(&self, ty: Handle<Type>, shared: &mut BTreeMap<String, Items>) -> String {
         match &self.shader.module.types[ty].inner {
             TypeInner::Array { base, stride, .. } => {
@@ -19,7 +19,7 @@ impl ShaderBindings<'_> {
         }
     }
 
-    /// The host's type, as it lies in a uniform or in a storage buffer.
+    /// Rust type for a WGSL type in a uniform buffer or in a storage buffer; `used` tells which.
     pub fn host_type(&self, ty: Handle<Type>, used: Use, shared: &mut BTreeMap<String, Items>) -> String {
         let module = &self.shader.module;
         let of = &module.types[ty];
@@ -45,7 +45,7 @@ impl ShaderBindings<'_> {
         }
     }
 
-    /// Adds a struct to its file's module, and returns its path.
+    /// Adds a struct to the module of its WGSL file. Returns the struct's Rust path.
     fn structure(
         &self,
         name: &str,
@@ -84,7 +84,8 @@ impl ShaderBindings<'_> {
         format!("crate::shared::{}::{name}", path.replace('/', "::"))
     }
 
-    /// The host casts elements of buffers from and to bytes, so they must not have bytes that belong to no member.
+    /// Fails the build if a struct has padding bytes. The host casts elements of buffers to and from bytes, so every byte must
+    /// belong to a member.
     fn refuse_holes(&self, name: &str, members: &[StructMember], span: u32) {
         let module = &self.shader.module;
         let mut end = 0;
@@ -103,7 +104,7 @@ impl ShaderBindings<'_> {
         }
     }
 
-    /// Neither must there be bytes between the elements of an array.
+    /// Fails the build if an array has padding bytes between its elements, because the host casts whole buffers to bytes.
     fn refuse_gaps(&self, base: Handle<Type>, stride: u32) {
         let module = &self.shader.module;
         let size = module.types[base].inner.size(module.to_ctx());
@@ -131,7 +132,7 @@ impl ShaderBindings<'_> {
     }
 }
 
-/// Whether a type consists of integers only.
+/// Whether a type is an integer or a vector of integers.
 fn is_whole(ty: &TypeInner) -> bool {
     match ty {
         TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) | TypeInner::Vector { scalar, .. } => {
@@ -141,12 +142,12 @@ fn is_whole(ty: &TypeInner) -> bool {
     }
 }
 
-/// The use of a type, which decides its layout on the host.
+/// Where a type is used, which decides its layout on the host.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Use {
-    /// Written by encase.
+    /// In a uniform buffer, which the crate `encase` writes.
     Uniform,
-    /// Cast from bytes.
+    /// In a storage buffer, which is cast to and from bytes.
     Storage,
 }
 
@@ -162,7 +163,7 @@ impl Use {
     }
 }
 
-/// The host's name of a scalar.
+/// Rust name of a scalar type.
 pub fn scalar_name(scalar: Scalar) -> &'static str {
     match scalar.kind {
         ScalarKind::Bool => "bool",
@@ -172,7 +173,8 @@ pub fn scalar_name(scalar: Scalar) -> &'static str {
     }
 }
 
-/// The Rust type and the value of a constant: a literal, or a vector or an array, which becomes an array.
+/// Rust type and value of a constant, which is a literal, a vector or an array. Vectors and arrays become Rust arrays. `None` for
+/// others.
 pub fn constant_text(module: &naga::Module, init: Handle<naga::Expression>) -> Option<(String, String)> {
     match &module.global_expressions[init] {
         naga::Expression::Literal(literal) => {
@@ -189,7 +191,7 @@ pub fn constant_text(module: &naga::Module, init: Handle<naga::Expression>) -> O
     }
 }
 
-/// The Rust type and the value of a literal.
+/// Rust type and value of a literal; `None` for types that the generator does not support.
 pub fn literal_text(literal: Literal) -> Option<(&'static str, String)> {
     Some(match literal {
         Literal::Bool(value) => ("bool", value.to_string()),

@@ -1,9 +1,9 @@
-//! Ground cover in the form that shaders use: zones, the texels of their textures at the scale of a colour map, and the mapping
-//! of textures onto the ground.
+//! Ground cover in the form that shaders use: zones, texels of the zones' textures at the resolution of a colour map, and the
+//! mapping of textures onto the ground.
 
 pub use crate::shared::terrain::texturing::{TILES_PERIOD, TRIPLANAR_PLANES};
 pub use crate::shared::terrain::tiles::MapZone;
-/// Zone in the form that shaders use ([`zone_of`]).
+/// A zone in the form that shaders use; [`zone_of`] computes it.
 pub use crate::shared::terrain::zones::Zone as ShaderZone;
 use crate::terrain::config::{
     MAX_REPEATS, Slope, TerrainConfig, Zone, check_range, check_terrain_scale, check_zone_count, finite,
@@ -11,13 +11,13 @@ use crate::terrain::config::{
 use crate::terrain::texture::{TEXTURE_SIZE, TerrainTexture};
 use crate::{InputError, srgb};
 
-/// Fixed-point one of texture tiles, 2^22: a word holds [`TILES_PERIOD`] tiles.
+/// Fixed-point value of one texture tile, 2^22. A `u32` can therefore count [`TILES_PERIOD`] tiles.
 const TILE_ONE: f64 = 4_194_304.0;
 
 /// Converts a zone to the form that shaders use.
 pub fn zone_of(zone: &Zone) -> ShaderZone {
     let Slope { min, max, fade } = zone.slope;
-    // Tangents of half the angles at which a weight is 0 and 1. Ranges that begin at 0° or end at 90° have no transition there.
+    // Slopes are tangents of half their angle. A range that begins at 0° or ends at 90° has no transition at that end.
     let half = |degrees: f64| libm::tan(degrees.clamp(0.0, 90.0).to_radians() / 2.0);
     let line = |from: f64, to: f64| {
         let [zero, one] = [half(from), half(to)];
@@ -33,29 +33,29 @@ pub fn zone_of(zone: &Zone) -> ShaderZone {
     }
 }
 
-/// Ground that a colour map shows: zones, and the texels of their textures.
+/// Ground cover of a colour map: zones and the texels of their textures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cover {
-    /// Zones, 1 to 32. Each has 4^`edge_log2` texels in `texels`, starting at `first`.
+    /// Zones, 1 to 32. The texels of a zone are `texels[first..]`, 4^`edge_log2` of them.
     pub zones: Vec<MapZone>,
-    /// Linear texels, row by row: red, green, blue, and the height of the texture, 16 bits each, 0 to 65535.
+    /// Linear texels of all zones, row by row: red, green, blue, and height in the texture; 16 bits each, 0 to 65535.
     pub texels: Vec<[u16; 4]>,
     /// World units between neighbouring samples.
     pub terrain_scale: f64,
-    /// World units that a texture tile covers.
+    /// Edge length of a texture tile in world units.
     pub tile: f64,
     /// Strength of the colour variation, 0 to 1.
     pub variation: f32,
-    /// Whether steep ground is also textured from the sides.
+    /// Whether steep ground is also textured from the sides (triplanar mapping).
     pub triplanar: bool,
 }
 
 impl Cover {
-    /// Cover of a configuration, with one texture per zone. It takes the mip level of each texture whose texel size is nearest
-    /// to the distance between samples.
+    /// Creates the cover of a configuration, with one texture per zone. Of each texture it takes the mip level whose texel size
+    /// is nearest to the distance between samples.
     ///
     /// # Errors
-    /// [`InputError`] where the numbers of zones and textures differ, and as [`TerrainConfig::validate`].
+    /// [`InputError`] when the number of textures is not the number of zones, and as [`TerrainConfig::validate`].
     pub fn new(config: &TerrainConfig, textures: &[TerrainTexture]) -> Result<Self, InputError> {
         config.validate()?;
         if textures.len() != config.zones.len() {
@@ -81,7 +81,7 @@ impl Cover {
         Ok(cover)
     }
 
-    /// Checks that there are 1 to 32 zones with valid ranges and existing texels, and checks every other field.
+    /// Checks that there are 1 to 32 zones, that their ranges are valid and their texels exist, and checks every other field.
     ///
     /// # Errors
     /// [`InputError`] that names the field.
@@ -119,7 +119,8 @@ impl Cover {
         Ok(())
     }
 
-    /// Packed texels for the colour map kernel: red and green in the halves of one word, blue and height in those of another.
+    /// Texels in the form that the colour map kernel reads, two words each. The first word has red in its low half and green in
+    /// its high half; the second has blue and height.
     #[cfg(feature = "gpu")]
     pub fn packed_texels(&self) -> Vec<[u32; 2]> {
         let packed = |texel: &[u16; 4]| {
@@ -129,39 +130,40 @@ impl Cover {
         self.texels.iter().map(packed).collect()
     }
 
-    /// Number of planes from which textures are projected onto the ground: 3 if triplanar, otherwise 1.
+    /// Number of planes from which textures are projected onto the ground: 3 with triplanar mapping, otherwise 1.
     pub fn planes(&self) -> u32 {
         planes(self.triplanar)
     }
 
-    /// Tiles per sample and per unit of height, in 2^-22 tiles.
+    /// Texture distance per sample and per unit of height, both in 2^-22 tiles.
     pub fn steps(&self) -> [u32; 2] {
         [self.terrain_scale / self.tile, 1.0 / self.tile].map(|tiles| (tiles * TILE_ONE).round() as u32)
     }
 
-    /// Position of a patch's first sample in 2^-22 tiles, modulo [`TILES_PERIOD`]. `patch` is the patch's column and row, and
-    /// `patch_size` the number of samples along its edge.
+    /// Texture position of a patch's first sample (east, south) in 2^-22 tiles, modulo [`TILES_PERIOD`] tiles. `patch` is the
+    /// patch's column and row. `patch_size` is the number of samples along the patch's edge.
     pub fn place(&self, patch: [i32; 2], patch_size: u32) -> [u32; 2] {
         let tiles = f64::from(patch_size.saturating_sub(1)) * self.terrain_scale / self.tile;
-        // Rounding may give the period itself; it wraps to 0.
+        // Rounding may give the period itself, which the conversion to `u32` wraps to 0.
         let fixed = |index: i32| (f64::from(index) * tiles).rem_euclid(TILES_PERIOD.into()) * TILE_ONE;
         patch.map(|index| fixed(index).round() as u64 as u32)
     }
 }
 
-/// Number of planes from which textures are projected: 3 if triplanar, otherwise 1.
+/// Number of planes from which textures are projected: 3 with triplanar mapping, otherwise 1.
 pub(crate) fn planes(triplanar: bool) -> u32 {
     if triplanar { TRIPLANAR_PLANES } else { 1 }
 }
 
-/// Mip level whose texel size is nearest to the distance between samples. `between` is that distance in texels of level 0.
+/// Mip level whose texel size is nearest to the distance between samples. `between` is this distance, in texels of level 0.
 fn level_of(between: f64) -> u32 {
     (0..TEXTURE_SIZE.ilog2())
         .find(|level| between < f64::from(1 << level) * std::f64::consts::SQRT_2)
         .unwrap_or(TEXTURE_SIZE.ilog2())
 }
 
-/// Converts a texel to linear light.
+/// Converts an sRGB texel with 8 bits per channel to linear light with 16 bits. The fourth channel is the height and only gets
+/// wider.
 fn linear(texel: &[u8]) -> [u16; 4] {
     let color = |channel: usize| (srgb::linear(texel[channel]) * 65_535.0 + 0.5) as u16;
     [color(0), color(1), color(2), u16::from(texel[3]) * 257]

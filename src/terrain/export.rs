@@ -1,13 +1,13 @@
-//! Heights for use by other programs: hashes, and fields without their margins.
+//! Helpers for heights that other programs use: hashes, and copies of fields without their margins.
 
 use crate::hash;
 
-/// SHA-256 of the little-endian heights, as hexadecimal digits.
+/// SHA-256 of the heights as little-endian bytes, in hexadecimal digits.
 pub fn sha256(heights: &[i32]) -> String {
     hash::sha256(&heights.iter().map(|height| height.cast_unsigned()).collect::<Vec<_>>())
 }
 
-/// Copies a field with `width` samples per row without its outermost `samples` rings.
+/// Copies a field with `width` samples per row, without the outermost `samples` rings of samples.
 pub fn cropped(field: &[i32], width: usize, samples: usize) -> Vec<i32> {
     let inner = width - 2 * samples;
     let rows = field.chunks_exact(width).skip(samples).take(inner);

@@ -1,4 +1,4 @@
-//! Injected heights (B sections 3.3.1 and 4.4): reading them, and finding the ones that a window sees.
+//! Injected heights, called features (B sections 3.3.1 and 4.4): reading files, and finding the features that a window needs.
 
 #[cfg(feature = "gpu")]
 mod index;
@@ -20,35 +20,35 @@ use crate::{Error, InputError};
 #[cfg(feature = "gpu")]
 pub use index::{FeatureGrid, FeatureIndex};
 
-/// One feature file, in B's JSON.
+/// One file of features for one patch, in B's JSON format.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct FeatureFile {
-    /// Coordinates of the patch.
+    /// Coordinates of the patch to which the points belong.
     pub patch_coordinates: [i32; 2],
-    /// Points as x, y and height, one point after the other. x and y count samples of the patch; heights are in height units.
+    /// Points as consecutive triples x, y, height. x and y count samples of the patch from 0; heights are in height units.
     pub precomputed_heights: Vec<f64>,
 }
 
 impl FeatureFile {
-    /// Reads B's JSON.
+    /// Reads a feature file from JSON text.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not valid JSON of this form.
+    /// [`InputError`] for text that is not valid JSON or does not match the fields of [`FeatureFile`].
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         from_json_object("features", text)
     }
 
-    /// Reads a JSON file.
+    /// Reads a feature file from disk.
     ///
     /// # Errors
-    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] when it is not valid JSON of this form.
+    /// [`Error::File`] when the file cannot be read; [`Error::InputFile`] for the errors of [`FeatureFile::from_json`].
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         Self::from_json(&read_text(path)?)
             .map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
-    /// Points as (X, Y, height in 1/65536 units), checked against the patch.
+    /// Points as (x, y, height in 1/65536 units), checked against the patch.
     fn points(&self, config: &TerrainConfig) -> Result<Vec<(i32, i32, i32)>, InputError> {
         let values = &self.precomputed_heights;
         if !values.len().is_multiple_of(3) {
@@ -76,22 +76,22 @@ impl FeatureFile {
     }
 }
 
-/// Injected heights of a world, indexed for lookup by window.
+/// Injected heights (features) of a whole world, indexed by position.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Features {
-    /// Effect of injection on a computed height.
+    /// How an injected height changes the computed height of its point.
     pub mode: FeatureMode,
-    // In `seamless` there is one world, (0, 0). In the other modes each patch is a world of its own, whose world coordinates
-    // start at the patch. Points are indexed by (Y, X) in world coordinates.
+    // Points by (Y, X) in world coordinates, per world. `seamless` terrain has a single world, (0, 0). In the other border modes
+    // each patch is its own world, and world coordinates start at the patch.
     worlds: BTreeMap<[i32; 2], BTreeMap<(i64, i64), i32>>,
 }
 
 impl Features {
-    /// Checks and collects feature files.
+    /// Collects and checks feature files.
     ///
     /// # Errors
-    /// [`InputError`] for a coordinate outside the patch, a list whose length is not a multiple of 3, heights
-    /// that are not finite or could overflow, and a lattice point with two different heights.
+    /// [`InputError`] for a coordinate outside its patch, for a list whose length is not a multiple of 3, for heights that are
+    /// not finite or could overflow, and for a lattice point with two different heights.
     pub fn new(config: &TerrainConfig, files: &[FeatureFile], mode: FeatureMode) -> Result<Self, InputError> {
         config.validate()?;
         let mut features = Self { mode, worlds: BTreeMap::new() };
@@ -102,13 +102,13 @@ impl Features {
         Ok(features)
     }
 
-    /// Adds one file. Call [`Features::check`] after the last.
+    /// Adds the points of one file. Call [`Features::check`] after the last file.
     ///
     /// # Errors
-    /// As [`Features::new`].
+    /// [`InputError`] as [`Features::new`].
     pub fn add(&mut self, config: &TerrainConfig, file: &FeatureFile) -> Result<(), InputError> {
         let patch = file.patch_coordinates;
-        // Features of a patch that no window can have would never be seen.
+        // A patch that no window can have is refused, because its features would never be used.
         Window { patch, apron: 0 }.validate(config)?;
         let spacing = config.sample_spacing();
         let seamless = config.border == Border::Seamless;
@@ -131,10 +131,10 @@ impl Features {
         Ok(())
     }
 
-    /// Refuses heights that could overflow when the offsets of the configuration are added.
+    /// Refuses features whose heights could overflow when the configuration's random offsets are added.
     ///
     /// # Errors
-    /// [`InputError`] when heights with these features could leave the range of fixed-point heights.
+    /// [`InputError`] when a height with these features could exceed the range of fixed-point heights.
     pub fn check(&self, config: &TerrainConfig) -> Result<(), InputError> {
         config.check_overflow(self.largest(), self.mode == FeatureMode::Additive)
     }
@@ -149,7 +149,7 @@ impl Features {
         self.worlds.values().map(BTreeMap::len).sum()
     }
 
-    /// Mode of injection; `None` if there are no features.
+    /// Mode in which features are injected; `None` if there are no features.
     #[cfg(feature = "gpu")]
     pub fn injection(&self) -> Option<FeatureMode> {
         (!self.is_empty()).then_some(self.mode)
@@ -164,8 +164,8 @@ impl Features {
             .unwrap_or(0)
     }
 
-    /// Injected points on a square lattice in the world coordinates of `world`, as (column, row, height), sorted by row and
-    /// column. `new_only` excludes points that also lie on the lattice of twice the spacing.
+    /// Injected points on a square lattice, as (column, row, height), sorted by row and then column. The lattice is in world
+    /// coordinates of the world `world`. `new_only` excludes points that also lie on the lattice with twice the spacing.
     pub(crate) fn on_lattice(
         &self,
         world: [i32; 2],
@@ -188,8 +188,9 @@ impl Features {
         found
     }
 
-    /// Positions (column, row) of the injected points of each window of `patches`, sorted by row. In `wrap` and `blend`, the
-    /// samples around a patch, and their features, belong to other patches or to the other side of the patch itself.
+    /// Positions (column, row) of the injected points in the window of each patch, sorted by row. In the modes `wrap` and
+    /// `blend`, samples around a patch come from other patches or from the opposite side of the patch itself, together with their
+    /// features.
     pub(crate) fn in_windows(
         &self,
         config: &TerrainConfig,
@@ -226,7 +227,7 @@ impl Features {
             .collect()
     }
 
-    /// World that contains a patch; see [`Features::on_lattice`].
+    /// World that contains a patch: (0, 0) for `seamless` terrain, otherwise the patch's own coordinates.
     pub(crate) fn world_of(config: &TerrainConfig, patch: [i32; 2]) -> [i32; 2] {
         if config.border == Border::Seamless { [0, 0] } else { patch }
     }

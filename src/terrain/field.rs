@@ -1,4 +1,4 @@
-//! Complete fields on the CPU: the references of the operations, in the order of a recipe.
+//! Complete height fields on the CPU. The reference implementations of all operations run in the order of a recipe.
 
 use rayon::prelude::*;
 
@@ -13,8 +13,8 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::thermal::Thermal;
 use crate::terrain::window::Window;
 
-/// Final heights of `patches` in 1/65536 units, each with `margin` samples around it, in rows of patchSize + 2·margin. Patches
-/// are generated in parallel on rayon's threads.
+/// Final heights of `patches` in 1/65536 height units, one list per patch. A list has rows of patchSize + 2·margin samples: the
+/// patch with `margin` samples on every side. Patches are generated in parallel on rayon's threads.
 ///
 /// # Errors
 /// [`InputError`] as [`Recipe::validate`].
@@ -22,7 +22,7 @@ pub fn field(recipe: &Recipe, patches: &[[i32; 2]], margin: u32) -> Result<Vec<V
     field_with(recipe, patches, margin, &|| ())
 }
 
-/// As [`field`]; calls `progress` after every patch, on the thread that generated it.
+/// Returns the same as [`field`], and calls `progress` after each finished patch, on the thread that generated that patch.
 ///
 /// # Errors
 /// [`InputError`] as [`Recipe::validate`].
@@ -42,7 +42,7 @@ pub fn field_with(
         field
     };
     let injected = recipe.injected(patches, apron);
-    // Patches of `blend` depend on each other; all others are generated independently from start to end.
+    // Patches of `blend` depend on each other. All other patches are generated independently from start to end.
     if let Border::Blend(_) = config.border {
         let windows = generate(config, features, patches, apron);
         return Ok(windows.into_par_iter().zip(&injected).map(|(window, at)| finished(window, at)).collect());
@@ -54,7 +54,7 @@ pub fn field_with(
     Ok(patches.par_iter().zip(&injected).map(made).collect())
 }
 
-/// Windows of `patches` before despiking and erosion.
+/// Heights of `patches`, each with `apron` samples on every side, before despiking and erosion.
 pub fn generate(
     config: &TerrainConfig,
     features: &Features,
@@ -90,7 +90,7 @@ pub fn generate(
         .collect()
 }
 
-/// Despikes and erodes a window; `injected` lists (column, row) of its features, sorted by row.
+/// Despikes and erodes a window. `injected` lists (column, row) of the window's injected points, sorted by row.
 fn finish(recipe: &Recipe, mut width: usize, injected: &[(u32, u32)], mut window: Vec<i32>) -> Vec<i32> {
     if let Some(despike) = recipe.despike {
         window = despike::reference::despike(&window, width, despike.fixed_threshold(), |x, y| {
@@ -106,14 +106,14 @@ fn finish(recipe: &Recipe, mut width: usize, injected: &[(u32, u32)], mut window
     eroded.window
 }
 
-/// A window that shrinks with every iteration of erosion.
+/// A window of heights whose width shrinks by 2 with every iteration of erosion.
 struct Eroded {
     window: Vec<i32>,
     width: usize,
 }
 
 impl Eroded {
-    /// Thermal erosion.
+    /// Applies all iterations of thermal erosion.
     fn slide(&mut self, thermal: Thermal, scale: f64) {
         for _ in 0..thermal.iterations {
             self.window =
@@ -122,7 +122,7 @@ impl Eroded {
         }
     }
 
-    /// Hydraulic erosion.
+    /// Applies all cycles of hydraulic erosion.
     fn rain(&mut self, hydraulic: Hydraulic, scale: f64) {
         let mut flow = Vec::new();
         for cycle in 0..hydraulic.iterations {

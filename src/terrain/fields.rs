@@ -3,10 +3,10 @@
 use crate::InputError;
 use crate::gpu::{Buffer, Gpu, GpuError};
 
-/// `count` fields of `width`² heights (1/65536 units), row by row.
+/// `count` square fields of `width`² heights each (1/65536 height units), one field after the other, row by row.
 #[derive(Debug, Clone)]
 pub struct Fields {
-    /// The heights.
+    /// The heights of all fields; the buffer may be longer.
     pub heights: Buffer<i32>,
     /// Samples along an edge of a field.
     pub width: u32,
@@ -14,19 +14,19 @@ pub struct Fields {
     pub count: u32,
 }
 
-/// Location of one field in a batch that is split into parts.
+/// Location of a field in a batch that is split into parts, one buffer per part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Place {
     /// Index of the part.
     pub part: usize,
-    /// The field's index in the part.
+    /// Index of the field within the part.
     pub index: u32,
 }
 
-/// Places of all fields of `parts`, in order. All fields must be `width` samples wide.
+/// Locations of all fields of `parts`, in order. Every field must be `width` samples wide.
 ///
 /// # Errors
-/// [`InputError`] that names a part of another width, or one whose buffer is too short.
+/// [`InputError`] that names the part whose width differs or whose buffer is too short.
 pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputError> {
     let mut places = Vec::new();
     for (part, fields) in parts.iter().enumerate() {
@@ -38,12 +38,12 @@ pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputEr
     Ok(places)
 }
 
-/// Advice in errors about fields larger than a binding.
+/// Advice for errors about fields that are larger than a binding may be.
 pub(crate) const REMEDY: &str = "split the batch (fewer patches at once), use smaller patches or a smaller apron (fewer \
     iterations of erosion), or compute on the CPU with the functions in the `reference` modules";
 
 impl Fields {
-    /// Allocates fields of zeros.
+    /// Allocates `count` fields of `width`² heights, all 0.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
@@ -53,16 +53,16 @@ impl Fields {
         Ok(Self { heights, width, count })
     }
 
-    /// Largest number of fields of `width` in one part: as many as fit in one dispatch and in a binding of WebGPU's default
-    /// size, 128 MiB; at least one. Batches are split at this size even on devices that allow more, so that the work on one
-    /// part stays short.
+    /// Largest number of fields of this width in one part, at least 1. A part must fit one dispatch and a storage binding of
+    /// WebGPU's default size, 128 MiB. This limit also applies on devices that allow more, so that the work on one part stays
+    /// short.
     pub fn most(gpu: &Gpu, width: u32) -> usize {
         let bytes = 4 * u64::from(width) * u64::from(width);
         let binding = gpu.max_binding().min(wgpu::Limits::default().max_storage_buffer_binding_size);
         (binding / bytes.max(1)).clamp(1, 65_535) as usize
     }
 
-    /// Heights of each field. Waits for the device.
+    /// Reads the heights of each field, in order. Waits for the device.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -71,7 +71,7 @@ impl Fields {
         gpu.block_on(self.read(gpu))
     }
 
-    /// Heights of each field; see [`Buffer::read`].
+    /// Reads the heights of each field, in order; see [`Buffer::read`].
     ///
     /// # Errors
     /// [`GpuError`].
@@ -81,32 +81,31 @@ impl Fields {
         Ok(all.chunks_exact(points).take(self.count as usize).map(<[i32]>::to_vec).collect())
     }
 
-    /// The same memory, viewed as fields that are `samples` smaller on every side. Their width is 0 if nothing is left.
+    /// The same buffer, viewed as fields that are `samples` smaller on every side. If nothing is left, the fields' width is 0.
     pub fn cropped(&self, samples: u32) -> Self {
         Self { width: self.inner_width(samples), ..self.clone() }
     }
 
-    /// Samples along an edge of the fields if they were `crop` samples smaller on every side.
+    /// Width of the fields after removal of `crop` samples on every side.
     fn inner_width(&self, crop: u32) -> u32 {
         self.width.saturating_sub(crop.saturating_mul(2))
     }
 
-    /// Thread counts of a kernel with one thread per sample, if the fields were `crop` samples smaller on every side.
+    /// Thread counts of a kernel with one thread per sample, after removal of `crop` samples on every side of each field.
     pub fn threads(&self, crop: u32) -> [u32; 3] {
         let width = self.inner_width(crop);
         [width, width, self.count]
     }
 
-    /// Number of samples in all fields if they were `crop` samples smaller on every side.
+    /// Number of samples in all fields together, after removal of `crop` samples on every side of each field.
     pub fn points(&self, crop: u32) -> usize {
         (self.inner_width(crop) as usize).pow(2) * self.count as usize
     }
 
-    /// Checks that the fields are not empty if they were `crop` samples smaller on every side, and that the buffer holds them
-    /// all.
+    /// Checks that the fields are larger than a rim of `crop` samples on every side, and that the buffer holds all fields.
     ///
     /// # Errors
-    /// [`InputError`] that names `field`.
+    /// [`InputError`] that names `field`, the caller's name for these fields.
     pub fn check(&self, field: &str, crop: u32) -> Result<(), InputError> {
         if self.inner_width(crop) == 0 {
             let bound = format!("must exceed {}, a rim of {crop} samples", crop.saturating_mul(2));

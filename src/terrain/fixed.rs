@@ -1,4 +1,4 @@
-//! Exact arithmetic of heights: the CPU reference of `wgsl/terrain/fixed.wgsl` and `wgsl/terrain/offset.wgsl`.
+//! Exact integer arithmetic on heights: the CPU reference of `wgsl/terrain/fixed.wgsl` and `wgsl/terrain/offset.wgsl`.
 
 use crate::hash::{LANES, threefry2x32};
 #[cfg(feature = "gpu")]
@@ -11,7 +11,7 @@ pub fn mean_of_four(a: i32, b: i32, c: i32, d: i32) -> i32 {
     (a >> 2) + (b >> 2) + (c >> 2) + (d >> 2) + (((a & 3) + (b & 3) + (c & 3) + (d & 3) + 2) >> 2)
 }
 
-/// Returns (9 (b + c) − (a + d)) / 16, rounded half up, for values of at most 1.25 · 2^30.
+/// Four-point interpolation: (9 (b + c) − (a + d)) / 16, rounded half up. Inputs must not exceed 1.25 · 2^30 in size.
 #[inline(always)]
 pub fn four_point(a: i32, b: i32, c: i32, d: i32) -> i32 {
     let whole = 9 * ((b >> 4) + (c >> 4)) - ((a >> 4) + (d >> 4));
@@ -24,13 +24,13 @@ pub fn mean_of_two(a: i32, b: i32) -> i32 {
     (a >> 1) + (b >> 1) + (((a & 1) + (b & 1) + 1) >> 1)
 }
 
-/// High word of the 64-bit product of two words.
+/// Upper 32 bits of the 64-bit product of two words.
 #[inline(always)]
 pub fn multiply_high(a: u32, b: u32) -> u32 {
     ((u64::from(a) * u64::from(b)) >> 32) as u32
 }
 
-/// Generator of random offsets for one seed and one distribution.
+/// Generator of random height offsets, for one seed and one distribution.
 #[derive(Debug, Clone, Copy)]
 pub struct Draw {
     key: [u32; 2],
@@ -38,12 +38,13 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// The offsets of a configuration.
+    /// Creates the generator with the seed and the distribution of a configuration.
     pub fn new(config: &TerrainConfig) -> Self {
         Self { key: config.key(), offset: config.offset }
     }
 
-    /// Adds to each `heights[i]` the offset of the point (x + i·step, y), in world coordinates.
+    /// Adds to each `heights[i]` the random offset of the point (x + i·step, y), in world coordinates. `range` is the offsets'
+    /// range in 1/65536 height units.
     pub(crate) fn add_row(&self, heights: &mut [i32], range: u32, x: u32, step: u32, y: u32) {
         for (chunk, row) in heights.chunks_mut(LANES).enumerate() {
             let start = x.wrapping_add(step.wrapping_mul((chunk * LANES) as u32));
@@ -57,8 +58,8 @@ impl Draw {
         }
     }
 
-    /// Offset of a height from its two random words. The constants are not shared with the shader: known heights from
-    /// independent programs check both copies.
+    /// Offset of a height, computed from the point's two random words. The constants are deliberately not shared with the shader:
+    /// known heights from independent programs check both copies.
     #[inline(always)]
     fn offset_of(&self, range: u32, first: u32, second: u32) -> i32 {
         let uniform = match self.offset {
@@ -73,7 +74,7 @@ impl Draw {
     }
 }
 
-/// Effect of injection on a computed height.
+/// How an injected height (feature) changes the computed height of its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FeatureMode {
@@ -85,7 +86,7 @@ pub enum FeatureMode {
 }
 
 impl FeatureMode {
-    /// Value of the shaders' `FEATURES` for this mode; there, 0 means no features.
+    /// Value of the shaders' constant `FEATURES` for this mode. In the shaders, 0 means that there are no features.
     #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
@@ -95,7 +96,7 @@ impl FeatureMode {
     }
 }
 
-/// Height of a point after injection.
+/// Height of a point after a feature's height has been injected.
 pub(crate) fn inject(mode: FeatureMode, computed: i32, feature: i32) -> i32 {
     match mode {
         FeatureMode::Keep => feature,

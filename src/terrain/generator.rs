@@ -1,8 +1,8 @@
-//! Complete fields on the device: the kernels in the order of a recipe. This is the GPU side of [`crate::terrain::field`].
+//! Complete fields on the device: all kernels in the order of a recipe. This is the GPU counterpart of [`crate::terrain::field`].
 //!
-//! Its buffers never hold more than two `i32` per sample of the enlarged windows, results included, or ten with hydraulic
-//! erosion. Each stage frees the data that the next one does not read. An index of features takes a further two bits per sample
-//! and level.
+//! The buffers never hold more than two `i32` per sample of the windows, results included; with hydraulic erosion, ten. Windows
+//! are patches with the samples that erosion needs around them. Each stage frees the data that the next stage does not read. An
+//! index of features takes two more bits per sample and level.
 
 mod erosion;
 
@@ -25,7 +25,7 @@ use crate::terrain::window::{Window, Windows};
 use crate::terrain::wrap::WrapPass;
 use erosion::after;
 
-/// Generates the fields of one recipe.
+/// Generates the fields of patches according to one recipe.
 #[derive(Debug, Clone)]
 pub struct Generator {
     recipe: Recipe,
@@ -34,12 +34,12 @@ pub struct Generator {
     pad: PadPass,
     despike: DespikePass,
     thermal: ThermalPass,
-    /// Compiled only for a recipe with hydraulic erosion.
+    /// `None` for recipes without hydraulic erosion: the pipeline is then not compiled.
     hydraulic: Option<HydraulicPass>,
 }
 
 impl Generator {
-    /// Checks the recipe and compiles its pipelines.
+    /// Checks the recipe and compiles all pipelines that it needs.
     ///
     /// # Errors
     /// [`crate::InputError`] for a recipe out of bounds; [`GpuError`].
@@ -64,20 +64,22 @@ impl Generator {
         })
     }
 
-    /// Number of patches that one part of the result may hold.
+    /// Largest number of patches in one part of the result.
     pub(crate) fn patches_per_part(&self, gpu: &Gpu, margin: u32) -> usize {
         self.most(gpu, self.recipe.config.patch_size + 2 * self.recipe.apron(margin))
     }
 
-    /// Largest number of windows in one part. The flow of hydraulic erosion takes four words per sample.
+    /// Largest number of windows in one part. With hydraulic erosion, a quarter of [`Fields::most`]: the flow takes four words
+    /// per sample.
     fn most(&self, gpu: &Gpu, width: u32) -> usize {
         let windows = Fields::most(gpu, width);
         if self.recipe.hydraulic.is_some() { (windows / 4).max(1) } else { windows }
     }
 
-    /// Final heights of `patches` with `margin` samples around each, in parts that each fit one storage binding. Calls
-    /// `progress` after each part with its number of patches. Waits for the device. At most two `i32` per sample of the
-    /// enlarged windows, or ten with hydraulic erosion, are allocated at once, apart from features.
+    /// Generates the final heights of `patches`, with `margin` samples around each. The result is split into parts that each fit
+    /// one storage binding. After each part, `progress` is called with the part's number of patches. Waits for the device.
+    ///
+    /// Apart from features, at most two `i32` per sample of the windows are allocated at once; with hydraulic erosion, ten.
     ///
     /// # Errors
     /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
@@ -92,7 +94,8 @@ impl Generator {
         gpu.block_on(self.generate_async(gpu, patches, margin, progress))
     }
 
-    /// As `Generator::generate`, but completes when the device has finished; see [`Gpu::wait_async`].
+    /// Generates the final heights of `patches` like `Generator::generate`, but without blocking: the future completes when the
+    /// device has finished; see [`Gpu::wait_async`].
     ///
     /// # Errors
     /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
@@ -109,7 +112,7 @@ impl Generator {
             return Ok(Vec::new());
         }
         if let Border::Blend(_) = self.recipe.config.border {
-            // Patches of one part may read those of another, so all are generated at once.
+            // A patch may read patches of any other part, so all patches are generated at once.
             let fields = self.by_themselves(gpu, patches, apron).await?;
             progress(patches.len());
             return Ok(fields);
@@ -133,7 +136,7 @@ impl Generator {
         self.generated(gpu, patches, apron, capacity).await
     }
 
-    /// Generates fields of `patches` with `apron`, with room for `capacity` features.
+    /// Generates the fields of `patches`, with `apron` samples around each and memory for `capacity` features.
     async fn generated(
         &self,
         gpu: &Gpu,
@@ -152,7 +155,7 @@ impl Generator {
         Ok(fields)
     }
 
-    /// Number of features that a window sees, including halos: those within its base lattice and one point around it.
+    /// Number of features that influence a window: those within the window's base lattice and one point around it.
     fn seen_features(&self, window: Window) -> usize {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         if features.is_empty() {
@@ -161,7 +164,7 @@ impl Generator {
         let spacing = config.sample_spacing();
         let finer = 1 << config.levels();
         let base = window.levels(config)[0];
-        // The region is one cell larger than needed for any alignment of the windows.
+        // The region is one cell larger than the windows need, whatever their position relative to the base lattice.
         let origin = base.map(|span| (span.first - 2) * finer * spacing);
         let width = base.map(|span| (span.width() as i64 + 4) * finer).into_iter().max().unwrap_or(0) as u32;
         features.on_lattice([0, 0], Lattice { origin, width, spacing }, false).len()
@@ -177,7 +180,7 @@ impl Generator {
         let mut sizes = part_sizes(patches.len(), self.most(gpu, width));
         let all = surrounds(config, patches);
         let injected = self.recipe.injected(patches, apron);
-        // The last part takes the remaining patches.
+        // The last part takes all remaining patches.
         sizes.pop();
         let (mut parts, mut start) = (Vec::new(), 0);
         for size in sizes {
@@ -187,13 +190,13 @@ impl Generator {
             start += size;
         }
         let last = self.padded(gpu, apron, &all[start..], &alone).await?;
-        // Free the patches, which only the last windows read: the following stages need the memory.
+        // Free the patches without aprons, which only the last windows read. The following stages need the memory.
         drop(alone);
         parts.push(self.finish(gpu, apron, &injected[start..], last).await?);
         Ok(parts)
     }
 
-    /// Windows around patches, gathered from all of them.
+    /// Gathers windows around patches; `alone` holds all patches without their surroundings.
     async fn padded(
         &self,
         gpu: &Gpu,
@@ -208,7 +211,7 @@ impl Generator {
         Ok(windows)
     }
 
-    /// Patches without the samples around them, after the transitions of `blend`.
+    /// Generates patches without samples around them, and applies the transitions of `blend`.
     async fn alone(&self, gpu: &Gpu, patches: &[[i32; 2]]) -> Result<Vec<Fields>, Error> {
         let config = &self.recipe.config;
         let mut parts = Vec::new();
@@ -222,7 +225,7 @@ impl Generator {
         Ok(parts)
     }
 
-    /// Despikes and erodes windows, alternating between them and a second buffer.
+    /// Despikes and erodes windows. The stages alternate between the windows' buffer and a second buffer.
     async fn finish(
         &self,
         gpu: &Gpu,
@@ -234,7 +237,7 @@ impl Generator {
         if self.recipe.apron(0) == 0 {
             return Ok(windows);
         }
-        // Each stage drops a ring of samples before it writes to the second buffer.
+        // Every stage drops a ring of samples, so the second buffer can be one sample smaller on each side.
         let other = Fields::new(gpu, "terrain windows", windows.cropped(1).width, windows.count)?;
         let mut both = [windows, other];
         if let Some(despike) = despike {
@@ -252,22 +255,22 @@ impl Generator {
         Ok(windows)
     }
 
-    /// Index of every injected point of the windows; `injected` has the (column, row) pairs of each window.
+    /// Index of all injected points of the windows. `injected` has the (column, row) pairs of each window.
     fn index(&self, gpu: &Gpu, apron: u32, injected: &[Vec<(u32, u32)>]) -> Result<FeatureIndex, GpuError> {
         let width = self.recipe.config.patch_size + 2 * apron;
         let points = injected.iter().map(Vec::len).sum::<usize>();
         let capacity = if self.recipe.features.is_empty() { 0 } else { points.max(1) };
         let index = FeatureIndex::new(gpu, &[width], injected.len() as u32, capacity)?;
         index.write(gpu, injected.len() as u32, |_, window| {
-            // The grid starts one point before the window; despiking does not read the values.
+            // The index counts from one point before the window, hence + 1. Despiking does not read the values.
             injected[window as usize].iter().map(|(column, row)| (column + 1, row + 1, 0)).collect()
         })?;
         Ok(index)
     }
 }
 
-/// Splits `count` patches into as few parts of at most `most` patches as possible, the smaller parts first. While an early part
-/// is processed, the memory of a later, equally large part is not allocated yet and is free for scratch.
+/// Splits `count` patches into the fewest parts of at most `most` patches, smaller parts first. Memory for a later part is not
+/// allocated while an earlier part is processed, so the earlier part can use it as scratch.
 fn part_sizes(count: usize, most: usize) -> Vec<usize> {
     let parts = count.div_ceil(most.max(1));
     (0..parts).map(|part| (count + part) / parts.max(1)).collect()

@@ -1,4 +1,4 @@
-//! Ground queries on the CPU for a world of patches: height and normal of the drawn triangles at a world position.
+//! Ground queries on the CPU: height and normal of the drawn terrain triangles at a world position.
 
 mod ray;
 
@@ -10,10 +10,10 @@ use crate::terrain::export::cropped;
 use crate::terrain::mesh::{FRACTION_ONE, GroundPoint, HeightField, sample_and_fraction};
 pub use ray::GroundHit;
 
-/// Heights of any number of patches of one configuration on the CPU, for queries of the ground.
+/// Heights of patches on the CPU, for queries of the ground. All patches have the same configuration.
 ///
-/// The answers are those of the triangles that relievo draws and exports ([`HeightField::write_obj`]), so that objects on the
-/// ground neither float nor sink. A patch takes four bytes per sample.
+/// The queries use the same triangles that relievo draws and exports ([`HeightField::write_obj`]), so that objects on the ground
+/// neither float nor sink. A patch takes four bytes per sample.
 ///
 /// ```
 /// use relievo::ops::terrain::field::field;
@@ -40,7 +40,7 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// An empty world of `config`.
+    /// Creates a ground without patches, for patches of the configuration `config`.
     ///
     /// # Errors
     /// [`InputError`] as [`TerrainConfig::validate`].
@@ -49,9 +49,9 @@ impl Ground {
         Ok(Self { size: config.patch_size, spacing: config.terrain_scale, patches: HashMap::new() })
     }
 
-    /// Adds the patch at `patch`, or replaces it. `heights` are in 1/65536 units, row by row, with `margin` samples around the
-    /// patch. [`crate::terrain::field::field`] returns them in this form, and fields on the device hold them so. The margin is
-    /// dropped.
+    /// Adds the patch with coordinates `patch`, or replaces it. `heights` are in 1/65536 height units, row by row, with `margin`
+    /// extra samples on each side, which are dropped. [`crate::terrain::field::field`] returns heights in this form, and fields
+    /// on the device store them in the same form.
     ///
     /// # Errors
     /// [`InputError`] when the number of heights is not (patchSize + 2 · margin)².
@@ -70,7 +70,7 @@ impl Ground {
         Ok(())
     }
 
-    /// Removes a patch. Returns whether it was there.
+    /// Removes a patch. Returns whether the ground had that patch.
     pub fn remove(&mut self, patch: [i32; 2]) -> bool {
         self.patches.remove(&patch).is_some()
     }
@@ -80,18 +80,18 @@ impl Ground {
         self.patches.get(&patch).map(HeightField::extremes)
     }
 
-    /// Height and normal of the ground at world position (x east, z south). Position 0 is the first sample of patch (0, 0).
-    /// `None` where no patch is.
+    /// Height and normal of the ground at world position (x east, z south), in world units. Position 0 is the first sample of
+    /// patch (0, 0). `None` if the ground has no patch at that position.
     ///
-    /// Patches of `seamless` terrain have the same heights along a shared edge, so a point on that edge has the same height in
-    /// both, bit for bit. If both patches are present, the eastern or southern one answers. (Patches of `wrap` terrain have
-    /// edges of their own; for them, the choice makes a difference.)
+    /// On an edge between two present patches, the eastern or southern patch answers. In `seamless` terrain both patches give the
+    /// same height there, bit for bit. In `wrap` terrain each patch has its own edge heights, so the choice of patch matters.
     pub fn point_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
         self.point_from([0, 0], x, z)
     }
 
-    /// As [`Ground::point_at`], with position 0 at the first sample of patch `origin`. A viewer far from patch (0, 0) should
-    /// choose an origin nearby: positions near 0 are precise, however far away the origin is.
+    /// Height and normal of the ground at a position relative to the first sample of patch `origin`, otherwise as
+    /// [`Ground::point_at`]. A viewer far from patch (0, 0) should choose a nearby origin: positions near 0 are precise, however
+    /// far away the origin is.
     pub fn point_from(&self, origin: [i32; 2], x: f64, z: f64) -> Option<GroundPoint> {
         let columns = self.cells(origin[0], x)?;
         let rows = self.cells(origin[1], z)?;
@@ -106,7 +106,8 @@ impl Ground {
         .next()
     }
 
-    /// Cells along one axis that contain a position. Where patches meet there are two, the one after the edge first.
+    /// Cells along one axis that contain a position. A position on the edge between two patches lies in two cells: first the one
+    /// after the edge, then the one before.
     fn cells(&self, origin: i32, position: f64) -> Option<[Option<Cell>; 2]> {
         let edge = i64::from(self.size) - 1;
         let (sample, fraction) = sample_and_fraction(position / self.spacing)?;
@@ -120,7 +121,7 @@ impl Ground {
     }
 }
 
-/// A cell along one axis, and a position in it.
+/// A cell along one axis, and a position in that cell.
 #[derive(Debug, Clone, Copy)]
 struct Cell {
     patch: i32,

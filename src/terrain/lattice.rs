@@ -1,12 +1,12 @@
-//! Lattices of points in world coordinates: the base lattice, where subdivision starts, and the features of a lattice.
+//! Lattices of points in world coordinates: the base lattice, where subdivision starts, and lookup of the features on a lattice.
 
 use crate::terrain::config::{Border, HEIGHT_LIMIT, HeightInterpolation, PATCH_EDGE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject};
 use crate::terrain::window::{Lattice, Span};
 
-/// Heights of the base lattice of a patch: random ones on the points of `spans`, or the corners of a patch that is generated
-/// alone.
+/// Heights of the base lattice, where subdivision starts. For `seamless` terrain they are random heights on the points of
+/// `spans`. For a patch that is generated alone they are the patch's four corners.
 pub(crate) fn base_lattice(
     config: &TerrainConfig,
     features: &Features,
@@ -47,20 +47,20 @@ pub(crate) fn limited(height: i32) -> i32 {
     height.clamp(-HEIGHT_LIMIT as i32, HEIGHT_LIMIT as i32)
 }
 
-/// World coordinate of a lattice point.
+/// World coordinate of the lattice point with this index, modulo 2^32.
 pub(crate) fn world(index: i64, spacing: i64) -> u32 {
     (index * spacing) as u32
 }
 
-/// The features of one level, indexed by row.
+/// Features on the lattice of one level, sorted by row and column.
 pub(crate) struct Injected {
     points: Vec<(u32, u32, i32)>,
     origin: [i64; 2],
 }
 
 impl Injected {
-    /// Features of the window's lattice extended by `rim` points on every side: outside points from which others are computed
-    /// see features too. `new_only` excludes points of the coarser lattice.
+    /// Finds the features on a window's lattice extended by `rim` points on every side. The extension is needed because points
+    /// outside the window also influence points inside. `new_only` excludes points of the coarser lattice.
     pub(crate) fn new(
         features: &Features,
         spans: [Span; 2],
@@ -73,7 +73,7 @@ impl Injected {
         Self { points: features.on_lattice([0, 0], lattice, new_only), origin }
     }
 
-    /// Injects features into each `heights[i]`, the point (x + i·step, y) in units of the lattice.
+    /// Injects features into `heights`. `heights[i]` is the height of point (x + i·step, y), in units of the lattice's spacing.
     pub(crate) fn inject_row(&self, features: &Features, y: i64, x: i64, step: i64, heights: &mut [i32]) {
         let row = (y - self.origin[1]) as u32;
         let start = self.points.partition_point(|point| point.1 < row);

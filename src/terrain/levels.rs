@@ -1,5 +1,5 @@
-//! Levels of subdivision on the device, one dispatch per level: the common part of the passes of `kernels/terrain/height.wgsl`,
-//! `smooth.wgsl` and `wrap.wgsl`.
+//! Levels of subdivision on the device, one dispatch per level. This is the common part of the passes that run
+//! `kernels/terrain/height.wgsl`, `smooth.wgsl` and `wrap.wgsl`.
 
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::level::Level;
@@ -10,17 +10,17 @@ use crate::terrain::lattice::base_lattice;
 use crate::terrain::window::{Lattice, SMOOTH_RIM, Span, Window, Windows};
 use crate::{Error, InputError};
 
-/// A kernel that computes a level from the next coarser one.
+/// A kernel that computes one level of subdivision from the next coarser level.
 #[derive(Debug, Clone)]
 pub(in crate::terrain) struct LevelPass {
     pub label: &'static str,
     pub kernel: Kernel,
-    /// Creates the kernel's bind groups.
+    /// Creates the kernel's bind groups for one dispatch.
     pub bind: fn(&Gpu, &Kernel, LevelBuffers<'_>) -> Result<Vec<Group>, GpuError>,
     pub with_features: bool,
 }
 
-/// Buffers of one dispatch.
+/// Buffers of one dispatch, which computes the lattice `fine` from the lattice `coarse`.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::terrain) struct LevelBuffers<'a> {
     pub level: &'a Uniform<Level>,
@@ -31,8 +31,7 @@ pub(in crate::terrain) struct LevelBuffers<'a> {
 }
 
 impl LevelPass {
-    /// Prepares the generation of `windows`. The configuration must be valid, with the borders that the kernel was compiled
-    /// for.
+    /// Prepares the generation of `windows`. The configuration must be valid, and its border mode must be the one of this kernel.
     ///
     /// # Errors
     /// [`InputError`] for an apron out of bounds, and for buffers that are too short; [`GpuError`].
@@ -74,7 +73,7 @@ impl LevelPass {
                 features: &features,
             };
             let groups = (self.bind)(gpu, &self.kernel, buffers)?;
-            // One thread per coarse point: a window may start anywhere in its first cell.
+            // One thread per coarse point. The extra thread per row is needed because a window may start anywhere in a cell.
             let edge = params.fine_width / 2 + 1;
             steps.push(Step::covering(&self.kernel, groups, [edge, edge, count]));
             origins.push(starts);
@@ -84,7 +83,8 @@ impl LevelPass {
     }
 }
 
-/// Points along an edge at every level, the base lattice first; enough for windows of any alignment.
+/// Points along an edge of a window at every level, starting with the base lattice. They are enough for windows at any position
+/// relative to the coarse lattices.
 fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
     let halo = match (config.border, config.interpolation) {
         (Border::Seamless, HeightInterpolation::Linear) => 3,
@@ -99,7 +99,7 @@ fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
     widths
 }
 
-/// Number of points around a window whose features a level sees. The grids of an index already have room for one.
+/// Number of points around a window whose features influence the window. Grids of a feature index already include one of them.
 fn rim(config: &TerrainConfig) -> u32 {
     match config.interpolation {
         HeightInterpolation::Linear => 1,
@@ -111,25 +111,25 @@ fn points(width: u32, count: u32) -> usize {
     count as usize * (width as usize).pow(2)
 }
 
-/// Buffers of a generation of windows.
+/// Buffers for the generation of a batch of windows.
 #[derive(Debug, Clone, Copy)]
 pub struct HeightBuffers<'a> {
-    /// Written: the heights, window by window; at least [`HeightJob::output_points`].
+    /// Written: the heights, one window after the other; at least [`HeightJob::output_points`] of them.
     pub output: &'a Buffer<i32>,
-    /// Scratch of the same configuration and windows.
+    /// Scratch memory that was made for the same configuration and windows.
     pub scratch: &'a HeightScratch,
 }
 
-/// Scratch memory for the levels between the base lattice and the output: about a third of the output's size. Jobs with the
-/// same configuration, count and apron may share it.
+/// Scratch memory for the levels between the base lattice and the output. Its size is about a third of the output's size. Jobs
+/// with the same configuration, count and apron may share one `HeightScratch`.
 #[derive(Debug, Clone)]
 pub struct HeightScratch {
-    // The two buffers alternate: the last dispatch reads the first, the dispatch before it the second, and so on.
+    // Dispatches alternate between the two buffers. The last dispatch reads the first buffer, the dispatch before it the second.
     buffers: [Buffer<i32>; 2],
 }
 
 impl HeightScratch {
-    /// Allocates scratch for `windows`.
+    /// Allocates scratch memory for the generation of `windows`.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
@@ -140,8 +140,8 @@ impl HeightScratch {
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
     }
 
-    /// Size of the largest level that each buffer ever holds; coarse levels of small patches are wider than fine ones. The base
-    /// lattice and the output are elsewhere.
+    /// Number of points that each of the two buffers must hold: its largest level. With small patches, coarse levels can be wider
+    /// than fine ones. The base lattice and the output have their own buffers.
     fn points(widths: &[u32], count: u32) -> [usize; 2] {
         let mut most = [0; 2];
         for (left, width) in widths[1..].iter().rev().skip(1).enumerate() {
@@ -155,13 +155,13 @@ impl HeightScratch {
         self.buffers.iter().zip(needed).try_for_each(|(buffer, needed)| buffer.check_holds("scratch", needed))
     }
 
-    /// Size of the scratch on the device, in bytes.
+    /// Memory of the scratch buffers on the device, in bytes.
     pub fn bytes(&self) -> u64 {
         self.buffers.iter().map(Buffer::bytes).sum()
     }
 }
 
-/// A prepared generation of a batch of windows: set the patches, then record any number of times.
+/// A prepared generation of a batch of windows. Set the patches, then record any number of times.
 #[derive(Debug, Clone)]
 pub struct HeightJob {
     config: TerrainConfig,
@@ -169,22 +169,22 @@ pub struct HeightJob {
     apron: u32,
     widths: Vec<u32>,
     base: Buffer<i32>,
-    /// First point of each window at every level after the base lattice, in units of the level's spacing.
+    /// First point of each window, for every level but the base lattice, in units of the level's spacing.
     origins: Vec<Buffer<[i32; 2]>>,
     features: FeatureIndex,
     job: Job,
 }
 
 impl HeightJob {
-    /// Number of heights of `windows`, which the output must hold.
+    /// Number of heights in all `windows` together. The output buffer must hold at least this many.
     pub fn output_points(config: &TerrainConfig, windows: Windows) -> usize {
         points(config.patch_size + 2 * windows.apron, windows.count)
     }
 
-    /// Sets the patches, at most `count`, and the features of the next recordings.
+    /// Sets the patches and features for the next recordings. The number of patches must not exceed the prepared count.
     ///
     /// # Errors
-    /// [`InputError`] for patches out of bounds; [`GpuError::Limit`] for more features than there is room for.
+    /// [`InputError`] for too many patches or patches out of bounds; [`GpuError::Limit`] for more features than the capacity.
     pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
         if patches.len() > self.count as usize {
             let bound = format!("must be at most {}, the batch's count", self.count);
@@ -217,7 +217,7 @@ impl HeightJob {
         Ok(())
     }
 
-    /// Records the generation of all windows.
+    /// Records the generation of all windows of the batch.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.job.record(encoder);
     }
@@ -227,18 +227,18 @@ impl HeightJob {
 mod tests {
     use super::*;
 
-    /// The scratch buffers are exactly as large as the largest level that they ever hold.
+    /// Each scratch buffer is exactly as large as the largest level that it ever holds.
     #[test]
     fn scratch_holds_what_dispatches_leave() {
         let points = |size, coarse_levels, apron| {
             let config = TerrainConfig { coarse_levels, ..TerrainConfig::new(size, 1.0, "").expect("valid") };
             HeightScratch::points(&level_widths(&config, apron), 3)
         };
-        // The levels before the last are 131, 68, 36, 20, … points wide.
+        // From fine to coarse, the levels before the last are 131, 68, 36, 20, … points wide.
         assert_eq!(points(257, 0, 0), [3 * 131 * 131, 3 * 68 * 68]);
         assert_eq!(points(3, 0, 0), [0, 0], "one dispatch");
         assert_eq!(points(5, 0, 0), [3 * 5 * 5, 0], "two");
-        // With smooth interpolation, the levels before the last of 3 points are 9, 12, 13, 14, 14, … points wide.
+        // For 3 samples with smooth interpolation, the levels before the last are 9, 12, 13, 14, 14, … points wide.
         let smooth = TerrainConfig {
             interpolation: HeightInterpolation::Smooth,
             coarse_levels: 8,
@@ -247,7 +247,7 @@ mod tests {
         assert_eq!(HeightScratch::points(&level_widths(&smooth, 0), 3), [3 * 14 * 14; 2]);
     }
 
-    /// The widths of levels are the same for all windows and cover every window, whatever its alignment.
+    /// The computed level widths are enough for every window, whatever its position relative to the coarse lattices.
     #[test]
     fn level_widths_cover_every_alignment() {
         for (size, coarse_levels, apron) in [(3, 0, 0), (5, 3, 1), (33, 2, 7), (257, 8, 0), (17, 1, 40)] {

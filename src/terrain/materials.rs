@@ -6,7 +6,7 @@ use crate::terrain::cover::{ShaderZone, zone_of};
 use crate::terrain::texture::{TEXTURE_SIZE, TerrainTexture};
 use crate::{Error, InputError};
 
-/// Zones with their textures on the device.
+/// Zones of ground and the zones' textures on the device.
 #[derive(Debug, Clone)]
 pub struct Materials {
     pub(crate) zones: Buffer<ShaderZone>,
@@ -16,10 +16,10 @@ pub struct Materials {
 }
 
 impl Materials {
-    /// Uploads zones and their textures, one texture per zone.
+    /// Uploads zones and their textures, one texture per zone in the same order.
     ///
     /// # Errors
-    /// [`InputError`] when their numbers differ; [`crate::gpu::GpuError`].
+    /// [`InputError`] when there are no zones or when the numbers of zones and textures differ; [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, zones: &[Zone], textures: &[TerrainTexture]) -> Result<Self, Error> {
         if zones.is_empty() || zones.len() != textures.len() {
             let bound = format!("must be one for each of the {} zones", zones.len());
@@ -32,7 +32,7 @@ impl Materials {
         Ok(Self { zones: zone_buffer, zone_count: zones.len() as u32, textures, sampler })
     }
 
-    /// Array view of the textures, one layer per zone, to bind.
+    /// View of the textures as a texture array with one layer per zone, for binding.
     pub(crate) fn view(&self) -> wgpu::TextureView {
         self.textures.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2Array),

@@ -1,4 +1,4 @@
-//! Triangle meshes of height fields (B section 4.4), for export. relievo itself draws from the heights without a mesh.
+//! Triangle meshes of height fields, for export (B section 4.4). Drawing needs no mesh: relievo draws directly from the heights.
 //! [`crate::terrain::ground::Ground`] answers height queries on the CPU.
 
 use std::io::{self, Write};
@@ -6,11 +6,11 @@ use std::io::{self, Write};
 use crate::asset::obj::{ObjWriter, Object};
 use crate::terrain::config::HEIGHT_ONE;
 
-/// Fixed-point one of positions within a cell: positions are rounded to 2⁻³⁰ of the distance between samples. The product of
-/// such a fraction and any height fits `i64`.
+/// Fixed-point value of 1 for positions within a cell: they are multiples of 2⁻³⁰ of the distance between samples. The product of
+/// such a position and any height fits `i64`.
 pub(crate) const FRACTION_ONE: i64 = 1 << 30;
 
-/// A point on the drawn ground.
+/// Height and normal of the drawn ground at one position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundPoint {
     /// Height in height units.
@@ -29,13 +29,13 @@ pub struct HeightField {
 }
 
 impl HeightField {
-    /// Builds a field of `size`² heights in 1/65536 units, with samples `terrain_scale` world units apart. `None` if the number
-    /// of heights is not `size`², or for fewer than 2 × 2 samples.
+    /// Builds a field of `size`² heights in 1/65536 height units, row by row, with samples `terrain_scale` world units apart.
+    /// `None` if the number of heights is not `size`², or if `size` is below 2.
     pub fn new(heights: Vec<i32>, size: usize, terrain_scale: f64) -> Option<Self> {
         (size >= 2 && heights.len() == size * size).then_some(Self { heights, size, spacing: terrain_scale })
     }
 
-    /// Height of a sample, in height units; `None` outside the field.
+    /// Height of the sample in column `x` and row `y`, in height units; `None` outside the field.
     pub fn point(&self, x: usize, y: usize) -> Option<f64> {
         (x < self.size && y < self.size).then(|| f64::from(self.heights[y * self.size + x]) / HEIGHT_ONE)
     }
@@ -43,21 +43,22 @@ impl HeightField {
     /// Lowest and highest height, in world units.
     pub fn extremes(&self) -> [f64; 2] {
         let all = || self.heights.iter().copied();
-        // Unreachable default: a field has at least four heights.
+        // A field has at least four heights, so the default is unreachable.
         [all().min(), all().max()].map(|height| f64::from(height.unwrap_or(0)) / HEIGHT_ONE)
     }
 
-    /// Height and normal of the ground at the position (u, v) in the cell (column, row). u and v are 0 to [`FRACTION_ONE`],
-    /// east and south of the cell's first corner.
+    /// Height and normal of the ground at position (u, v) in cell (column, row). u and v are 0 to [`FRACTION_ONE`], east and
+    /// south of the cell's first corner.
     ///
-    /// The triangles are those of the drawing pass and of [`HeightField::write_obj`]. The diagonal of each cell runs from its
-    /// north-eastern to its south-western corner, (1, 0) to (0, 1). On the diagonal, the north-western triangle answers.
+    /// The triangles are the same as in the drawing pass and in [`HeightField::write_obj`]. A cell's diagonal runs from its
+    /// north-eastern corner (1, 0) to its south-western corner (0, 1). On the diagonal, the north-western triangle answers.
     ///
-    /// The height is computed exactly, and then rounded to `f64`; the normal is computed in `f64`.
+    /// The height is computed exactly and then rounded to `f64`. The normal is computed in `f64`.
     pub(crate) fn triangle(&self, [column, row]: [usize; 2], [u, v]: [i64; 2]) -> GroundPoint {
         let corner = |dx: usize, dy: usize| i64::from(self.heights[(row + dy) * self.size + column + dx]);
         let (east, south) = (corner(1, 0), corner(0, 1));
-        // Barycentric weights are integers with a constant sum, so that results are exact, and equal where two triangles meet.
+        // Barycentric weights are integers with a constant sum. Heights are therefore exact, and equal on an edge of two
+        // triangles.
         let beyond = u + v - FRACTION_ONE;
         let (sum, rise) = if beyond <= 0 {
             let first = corner(0, 0);
@@ -76,12 +77,12 @@ impl HeightField {
         }
     }
 
-    /// Writes the mesh as Wavefront OBJ in world space. `first` is the world index of the first sample: patch coordinates times
-    /// patchSize − 1. Positions are decimals with full `f64` precision, so that adjacent patches write the same text for their
-    /// shared edge.
+    /// Writes the mesh as Wavefront OBJ in world space. `first` is the index of the field's first sample in the world: patch
+    /// coordinates times (patchSize − 1). Positions are decimals with full `f64` precision, so that adjacent patches write the
+    /// same text for their shared edge.
     ///
     /// # Errors
-    /// The errors of `out`.
+    /// Any error of writing to `out`.
     pub fn write_obj(&self, out: &mut impl Write, first: [i64; 2]) -> io::Result<()> {
         let at = |index: usize, axis: usize| (first[axis] + index as i64) as f64 * self.spacing;
         let positions = self.heights.iter().enumerate().map(|(index, height)| {
@@ -98,8 +99,8 @@ impl HeightField {
     }
 }
 
-/// Splits a position in samples into an integer sample and a fraction below [`FRACTION_ONE`]. `None` for a position that is not
-/// finite, or so large that `f64` has no fractions there.
+/// Splits a position, in samples, into an integer sample and a fraction below [`FRACTION_ONE`]. `None` if the position is not
+/// finite or is too large for `f64` to have fractions.
 pub(crate) fn sample_and_fraction(position: f64) -> Option<(i64, i64)> {
     let whole = position.floor();
     let has_fractions = whole.abs() < (1_i64 << f64::MANTISSA_DIGITS) as f64;
@@ -109,7 +110,7 @@ pub(crate) fn sample_and_fraction(position: f64) -> Option<(i64, i64)> {
     })
 }
 
-/// Triangles of a grid of `size`² points, counter-clockwise when seen from above.
+/// Triangles of a grid of `size`² points, as three point indices each, counter-clockwise when seen from above.
 fn triangles(size: usize) -> Vec<[u32; 3]> {
     let cells = (0..size - 1).flat_map(|row| (0..size - 1).map(move |column| (row * size + column) as u32));
     let south = size as u32;
@@ -121,7 +122,7 @@ mod tests {
     use super::*;
 
     fn ramp() -> HeightField {
-        // The height is 2·column + row, in height units.
+        // The height at a sample is 2·column + row, in height units.
         let heights = (0..9).map(|i| (2 * (i % 3) + i / 3) * 65_536).collect();
         HeightField::new(heights, 3, 0.5).expect("nine heights")
     }
@@ -163,7 +164,7 @@ mod tests {
             ramp().write_obj(&mut text, first).expect("a vector takes everything");
             String::from_utf8(text).expect("ASCII")
         };
-        // f32 could not tell these positions apart.
+        // An f32 could not represent this x position.
         assert!(text([1 << 30, -3]).contains("\nv 536870912.5 3 -1\n"));
     }
 }

@@ -1,7 +1,7 @@
-//! Seeded terrain: integer heights that are the same bits on every device (B section 3.3 and 4.4).
+//! Terrain generated from a seed. Heights are integers, and every device computes the same bits (B sections 3.3 and 4.4).
 //!
-//! **Decided**: heights are integers. B requires the exact same content on every client (3.3), but computes in floating
-//! point, which devices round differently.
+//! **Decided**: heights are integers. B requires exactly the same content on every client (3.3), but B's floating-point heights
+//! would be rounded differently on different devices.
 
 pub mod blend;
 pub mod border;

@@ -1,4 +1,4 @@
-//! Terrain recipes: the configuration, the features, and the operations after generation.
+//! Terrain recipes: a configuration, injected features, and the operations that run after generation.
 
 mod json;
 
@@ -13,13 +13,13 @@ use crate::terrain::thermal::Thermal;
 use crate::terrain::window::Window;
 use crate::{Error, InputError};
 
-/// Complete description of a field of patches. Operations run in the order of the struct's fields: generation, borders,
-/// despiking, thermal erosion, hydraulic erosion, and thermal erosion once more.
+/// Complete description of how patches of terrain are made. The order of operations is fixed: generation, borders, despiking,
+/// thermal erosion, hydraulic erosion, and thermal erosion once more.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
-    /// Configuration of the generation.
+    /// Configuration of the generated heights and borders.
     pub config: TerrainConfig,
-    /// Injected heights.
+    /// Heights that are injected during generation.
     pub features: Features,
     /// Removal of spikes; `None` skips it.
     pub despike: Option<Despike>,
@@ -32,7 +32,7 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// A recipe with generation only.
+    /// Creates a recipe without features, despiking and erosion.
     pub fn new(config: TerrainConfig) -> Self {
         Self {
             config,
@@ -44,10 +44,10 @@ impl Recipe {
         }
     }
 
-    /// Reads a JSON file. Texture paths in its zones are relative to the file.
+    /// Reads a recipe from a JSON file. Texture paths in the file's zones are relative to the file.
     ///
     /// # Errors
-    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] for the errors of [`Recipe::from_json`].
+    /// [`Error::File`] when the file cannot be read; [`Error::InputFile`] for the errors of [`Recipe::from_json`].
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         let read = Self::from_json(&read_text(path)?);
         let mut recipe = read.map_err(|source| Error::InputFile { path: path.to_owned(), source })?;
@@ -55,7 +55,8 @@ impl Recipe {
         Ok(recipe)
     }
 
-    /// Number of samples beyond the patch that generation must provide for a final field with `margin` samples around it.
+    /// Number of samples that generation must add on each side of a patch, so that `margin` samples remain after all operations.
+    /// Despiking and each iteration of erosion use up one sample per side.
     pub fn apron(&self, margin: u32) -> u32 {
         let iterations = |thermal: Option<Thermal>| thermal.map_or(0, |thermal| thermal.iterations);
         [
@@ -68,8 +69,8 @@ impl Recipe {
         .fold(margin, u32::saturating_add)
     }
 
-    /// Positions (column, row) of each window's injected points, which despiking leaves alone. The lists are empty without
-    /// despiking.
+    /// Positions (column, row) of the injected points in each patch's window, which despiking leaves unchanged. Without despiking
+    /// the lists are empty.
     pub(crate) fn injected(&self, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<(u32, u32)>> {
         match self.despike {
             Some(_) => self.features.in_windows(&self.config, patches, apron),
@@ -77,10 +78,10 @@ impl Recipe {
         }
     }
 
-    /// Checks the parameters, and that `patches` with `margin` samples around them can be generated.
+    /// Checks all parameters, and that `patches` can be generated with `margin` samples around each.
     ///
     /// # Errors
-    /// The first [`InputError`].
+    /// [`InputError`] for the first parameter or patch that is out of bounds.
     pub fn validate(&self, patches: &[[i32; 2]], margin: u32) -> Result<(), InputError> {
         self.config.validate()?;
         self.features.check(&self.config)?;
@@ -102,7 +103,7 @@ impl Recipe {
         Ok(())
     }
 
-    /// Replaces an error about the apron by one about the field that makes it large.
+    /// Replaces an error about the apron by an error about the number of iterations that makes the apron too large.
     fn caused(&self, error: InputError) -> InputError {
         match self.hydraulic {
             Some(Hydraulic { iterations, .. }) if error.path == "apron" && iterations > 0 => {

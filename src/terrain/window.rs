@@ -1,14 +1,14 @@
-//! Windows onto the plane: a patch and the samples around it, level by level.
+//! Windows onto the plane of samples. A window is a patch with the samples around it; it has a range of points at every level.
 
 use std::iter::successors;
 
 use crate::InputError;
 use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
 
-/// Largest number of samples by which a window may extend beyond its patch.
+/// Largest number of samples by which a window may extend beyond its patch on each side.
 pub const MAX_APRON: u32 = 4096;
 
-/// Number of points outside a window whose features it sees, at every level but the first, with smooth interpolation.
+/// With smooth interpolation: number of points outside a window whose features influence it, at every level but the first.
 pub(crate) const SMOOTH_RIM: u32 = 3;
 
 /// A patch and the samples around it: (patchSize + 2·apron)² samples.
@@ -20,7 +20,7 @@ pub struct Window {
     pub apron: u32,
 }
 
-/// The windows of a batch.
+/// A batch of windows with equal aprons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Windows {
     /// Number of windows.
@@ -39,17 +39,18 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    /// Span of the lattice with twice the spacing from which this span is computed: one cell of halo on each side.
+    /// Span of the next coarser lattice that is needed to compute this span. It includes one cell of halo on each side.
     pub(crate) fn coarser(self) -> Self {
         Self { first: (self.first + 1).div_euclid(2) - 1, last: self.last.div_euclid(2) + 1 }
     }
 
-    /// As [`Span::coarser`] for smooth interpolation: three more points on each side.
+    /// Span of the next coarser lattice that is needed to compute this span with smooth interpolation. It includes a halo of
+    /// three points on each side.
     fn coarser_smooth(self) -> Self {
         Self { first: self.first.div_euclid(2) - 3, last: (self.last + 1).div_euclid(2) + 3 }
     }
 
-    /// As [`Span::coarser`] for a patch that is generated alone: its ends lie on both lattices.
+    /// Span of the next coarser lattice for a patch that is generated alone, without a halo. The ends lie on both lattices.
     fn halved(self) -> Self {
         Self { first: self.first / 2, last: self.last / 2 }
     }
@@ -61,12 +62,12 @@ impl Span {
 }
 
 impl Window {
-    /// Samples along an edge of the window.
+    /// Samples along an edge of the window, apron included.
     pub fn width(&self, config: &TerrainConfig) -> u32 {
         config.patch_size + 2 * self.apron
     }
 
-    /// Columns and rows of the window, in units of samples.
+    /// Columns and rows of the window's samples, counted from the first sample of patch (0, 0).
     pub(crate) fn spans(&self, config: &TerrainConfig) -> [Span; 2] {
         let edge = i64::from(config.patch_size) - 1;
         self.patch.map(|patch| {
@@ -75,8 +76,8 @@ impl Window {
         })
     }
 
-    /// Columns and rows of the window at every level, the base lattice first. For a patch that is generated alone, they exclude
-    /// the apron.
+    /// Columns and rows of the window at every level, starting with the base lattice. For a patch that is generated alone, the
+    /// apron is excluded.
     pub(crate) fn levels(&self, config: &TerrainConfig) -> Vec<[Span; 2]> {
         let (apron, coarser): (_, fn(Span) -> Span) = match (config.border, config.interpolation) {
             (Border::Seamless, HeightInterpolation::Linear) => (self.apron, Span::coarser),
@@ -91,7 +92,7 @@ impl Window {
         levels
     }
 
-    /// Lattice of the window's samples, in the world that holds its features.
+    /// Lattice of the window's samples, in the coordinates of the world that holds the window's features.
     pub(crate) fn lattice(&self, config: &TerrainConfig) -> Lattice {
         let spacing = config.sample_spacing();
         let origin = if config.border == Border::Seamless {
@@ -102,10 +103,10 @@ impl Window {
         Lattice { origin, width: self.width(config), spacing }
     }
 
-    /// Checks the apron and the patch coordinates.
+    /// Checks that the apron and the patch coordinates are in bounds.
     ///
     /// # Errors
-    /// [`InputError`] when the apron is too large, or when world coordinates, halo included, exceed `i32`.
+    /// [`InputError`] when the apron exceeds [`MAX_APRON`], or when world coordinates, including halos, exceed `i32`.
     pub fn validate(&self, config: &TerrainConfig) -> Result<(), InputError> {
         if self.apron > MAX_APRON {
             return Err(InputError::new("apron", self.apron, format!("must be at most {MAX_APRON} samples")));
@@ -135,7 +136,7 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// The lattice with `rim` more points on every side.
+    /// The same lattice, enlarged by `rim` points on every side.
     #[cfg(feature = "gpu")]
     pub(crate) fn grown(self, rim: u32) -> Self {
         let origin = self.origin.map(|start| start - i64::from(rim) * self.spacing);

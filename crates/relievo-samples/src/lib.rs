@@ -1,5 +1,4 @@
-//! Things to try relievo with, that need no file: a creature with clips, a rock, a wall, and height maps with
-//! their colours.
+//! Sample content for relievo that needs no files: a creature with clips, a rock, a wall, and height maps with matching colours.
 
 pub use creature::creature;
 pub use maps::BuiltInMap;
@@ -11,10 +10,10 @@ pub mod creature;
 pub mod maps;
 mod shapes;
 
-/// The names of the models.
+/// Names of the sample models, as [`model`] accepts them.
 pub const MODELS: [&str; 3] = ["creature", "rock", "wall"];
 
-/// The model of a name.
+/// Generates the sample model with the given name.
 ///
 /// # Errors
 /// [`InputError`] for a name that is not one of [`MODELS`].
@@ -27,8 +26,8 @@ pub fn model(name: &str) -> Result<Model, InputError> {
     }
 }
 
-/// The samples as built-ins of scene files: the models of [`MODELS`], of which the creature has the colour of clay, and the
-/// height maps of [`BuiltInMap`] with 512 texels along an edge.
+/// The samples as built-ins of scene files: the models of [`MODELS`], and the height maps of [`BuiltInMap`] with 512 texels along
+/// an edge. The creature gets a clay-coloured material.
 #[cfg(feature = "gpu")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Samples;
@@ -38,7 +37,7 @@ impl relievo::scene_file::BuiltIns for Samples {
     fn model(&self, name: &str) -> Result<Model, InputError> {
         let mut found = model(name)?;
         if name == "creature" {
-            // It has no material of its own. The colour is in linear light.
+            // The creature has no material of its own, so it gets one here. The colour is in linear light.
             for mesh in &mut found.meshes {
                 mesh.material = Some(found.materials.len());
             }

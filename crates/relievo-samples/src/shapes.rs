@@ -1,4 +1,5 @@
-//! A rock and a wall, generated from `+ − × ÷`, square roots and counter-based randomness: the same bits on every machine.
+//! A rock and a wall as generated models. They use only `+ − × ÷`, square roots and counter-based randomness, so that every
+//! machine gets the same bits.
 
 use glam::DVec3;
 use relievo::InputError;
@@ -10,21 +11,21 @@ use relievo::ops::hash::{LANES, threefry2x32};
 use relievo::ops::terrain::config::BuiltIn;
 use relievo::ops::terrain::texture::{TEXTURE_SIZE, TerrainTexture};
 
-/// Cells along an edge of each of the six sides of the rock.
+/// Number of cells along an edge of each of the rock's six sides.
 const ROCK_CELLS: u32 = 24;
 
-/// The size of the wall: width, height and thickness.
+/// Width, height and thickness of the wall, in world units.
 const WALL: DVec3 = DVec3::new(4.0, 2.0, 0.5);
 
-/// World units that a tile of the wall's texture covers.
+/// Edge length in world units of one tile of the wall's texture.
 const WALL_TILE: f64 = 2.0;
 
-/// A rock about two units wide and one and a half high, whose foot is a little below the origin, with texture coordinates
-/// from 0 to 1 on each of six sides, and an image of broken rock. It has 7,000 triangles, and neither clips nor levels of
-/// detail.
+/// Generates a rock with 7,000 triangles and an image of broken rock, without clips and levels of detail. The rock is about two
+/// units wide and one and a half high; its foot is slightly below the origin. Texture coordinates go from 0 to 1 on each of its
+/// six sides.
 ///
 /// # Errors
-/// None in practice: the mesh is checked like that of any other model.
+/// Never fails in practice: the mesh is checked like the mesh of any other model.
 pub fn rock() -> Result<Model, InputError> {
     let mut builder = Builder::default();
     for side in SIDES {
@@ -38,17 +39,17 @@ pub fn rock() -> Result<Model, InputError> {
         });
     }
     let mut texels = TerrainTexture::built_in(BuiltIn::Hill).mips.swap_remove(0);
-    // A rock is opaque, and has no use for the heights of the texture.
+    // The rock is opaque, so the heights in the texture's alpha channel are replaced by 255.
     texels.chunks_exact_mut(4).for_each(|texel| texel[3] = 255);
     let image = image::RgbaImage::from_raw(TEXTURE_SIZE, TEXTURE_SIZE, texels);
     builder.model("rock", [1.0, 0.96, 0.9, 1.0], image)
 }
 
-/// A wall of 4 × 2 × 0.5 units that stands on the origin along x, with a texture coordinate of 1 for every two units, and a
-/// plain colour.
+/// Generates a wall of 4 × 2 × 0.5 units in a plain colour. It stands on the origin, and its length is along x. Texture
+/// coordinates grow by 1 every two units.
 ///
 /// # Errors
-/// None in practice, as for [`rock`].
+/// Never fails in practice: the mesh is checked like the mesh of any other model.
 pub fn wall() -> Result<Model, InputError> {
     let mut builder = Builder::default();
     for side in SIDES {
@@ -61,7 +62,7 @@ pub fn wall() -> Result<Model, InputError> {
     builder.model("wall", [0.62, 0.60, 0.57, 1.0], None)
 }
 
-/// A side of a cube from −1 to 1: where it faces, and the directions of u and of −v.
+/// A side of the cube from −1 to 1: outward normal, direction of u, and direction of −v.
 struct Side {
     out: DVec3,
     along: DVec3,
@@ -83,10 +84,10 @@ impl Side {
     }
 }
 
-/// The point of the rock in the direction of a point of the cube.
+/// Point on the rock's surface, in the direction of a point on the cube.
 fn rock_point(cube: DVec3) -> DVec3 {
     let direction = cube.normalize_or(DVec3::Y);
-    // Planes that cut a ball make edges; noise makes them uneven.
+    // The rock is a ball. Planes that cut the ball make edges, and noise makes the edges uneven.
     let cut = |normal: DVec3, distance: f64| {
         let cosine = direction.dot(normal.normalize_or(DVec3::Y));
         if cosine > 0.0 { distance / cosine } else { f64::INFINITY }
@@ -108,7 +109,7 @@ fn rock_point(cube: DVec3) -> DVec3 {
     (sharp + rough) * direction * DVec3::new(1.05, 0.8, 0.9) + 0.55 * DVec3::Y
 }
 
-/// Smooth noise between −1 and 1: values at whole points, blended.
+/// Value noise between −1 and 1: random values at integer points, interpolated smoothly.
 fn noise(at: DVec3) -> f64 {
     let low = at.floor();
     let part = at - low;
@@ -125,7 +126,7 @@ fn noise(at: DVec3) -> f64 {
     mix(slice(0), slice(1), smooth.z)
 }
 
-/// A mesh that grows side by side.
+/// A mesh to which sides are added one after the other.
 #[derive(Default)]
 struct Builder {
     positions: Vec<[f32; 3]>,
@@ -135,7 +136,7 @@ struct Builder {
 }
 
 impl Builder {
-    /// Adds a grid of `cells` × `cells`; `vertex` gives position, normal and texture coordinates at u, v of 0 to 1.
+    /// Adds a grid of `cells` × `cells`. `vertex(u, v)` returns position, normal and texture coordinates for u and v from 0 to 1.
     fn side(&mut self, cells: u32, vertex: impl Fn(f64, f64) -> (DVec3, DVec3, [f64; 2])) {
         let first = self.positions.len() as u32;
         let part = |index: u32| f64::from(index) / f64::from(cells);

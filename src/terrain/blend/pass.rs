@@ -10,7 +10,7 @@ use crate::terrain::config::HEIGHT_ONE;
 use crate::terrain::cover::Cover;
 use crate::terrain::fields::Fields;
 
-/// Draws the top-down colour maps of patches.
+/// Draws top-down colour maps of patches.
 #[derive(Debug, Clone)]
 pub struct BlendPass {
     kernel: Kernel,
@@ -19,11 +19,11 @@ pub struct BlendPass {
 /// Buffers of a [`BlendPass`] job.
 #[derive(Debug, Clone, Copy)]
 pub struct BlendBuffers<'a> {
-    /// Windows of heights with one sample of margin.
+    /// Read: windows of heights, each with one sample of margin on every side.
     pub windows: &'a Fields,
-    /// Position of each window's first inner sample, in tiles ([`Cover::place`]).
+    /// Read: texture position of each window's first inner sample ([`Cover::place`]), in 2^-22 tiles.
     pub places: &'a Buffer<[u32; 2]>,
-    /// Written: one pixel per sample, except for the outermost ring. RGBA, 8 bits each, red in the lowest byte, sRGB.
+    /// Written: one sRGB pixel per sample, without each window's outermost ring. RGBA with 8 bits each, red in the lowest byte.
     pub pixels: &'a Buffer<u32>,
 }
 
@@ -36,11 +36,11 @@ impl BlendPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the colour maps of windows, and uploads the cover.
+    /// Uploads the ground cover and prepares a job that draws the colour maps of all windows.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a cover or shading out of bounds, for windows with nothing inside the outermost ring, and for
-    /// places or an output that are too short; [`GpuError`].
+    /// [`crate::InputError`] for a cover or a shading out of bounds, for windows with nothing inside the outermost ring, and for
+    /// `places` or `pixels` that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -1,9 +1,9 @@
-//! B's transition area (section 3.3.1), the border mode `blend`: along a border with an existing patch, a new patch's samples
-//! move towards the neighbour's heights.
+//! Transitions between patches (B section 3.3.1, "transition area"), for the border mode `blend`. Along a border with an existing
+//! patch, the samples of a new patch move towards the existing patch's heights.
 //!
-//! Where only one neighbour is within reach, the shared border takes the neighbour's heights exactly. Near a point where four
-//! patches meet, the top or bottom transition runs after the left or right one. The vertical border then no longer has exactly
-//! the neighbour's heights there. `seamless` terrain has no such places.
+//! Where only one neighbour is within reach, samples on the shared border get exactly the neighbour's heights. Near a point where
+//! four patches meet, the top or bottom transition runs after the left or right one, so heights on the vertical border no longer
+//! match exactly. `seamless` terrain has no such mismatch.
 
 use crate::InputError;
 
@@ -16,10 +16,10 @@ mod visits;
 #[cfg(feature = "gpu")]
 pub use pass::BorderPass;
 
-/// Indices of the existing patches to the left, to the right, above (y − 1) and below (y + 1).
+/// Indices of a patch's existing neighbours: to the left, to the right, above (y − 1) and below (y + 1).
 pub type Neighbours = [Option<usize>; 4];
 
-/// Neighbours of each patch among the patches that come before it in `patches`.
+/// Neighbours of each patch, limited to patches that come earlier in `patches`.
 pub fn neighbours(patches: &[[i32; 2]]) -> Vec<Neighbours> {
     let mut known = std::collections::HashMap::new();
     let mut all = Vec::with_capacity(patches.len());
@@ -31,8 +31,8 @@ pub fn neighbours(patches: &[[i32; 2]]) -> Vec<Neighbours> {
     all
 }
 
-/// Groups patches into waves, so that each patch is in a later wave than the neighbours that it depends on. Patches of one wave
-/// are independent of each other.
+/// Groups patches into waves: each patch is in a later wave than the neighbours that it depends on. Patches of the same wave are
+/// independent of each other.
 ///
 /// # Errors
 /// [`InputError`] when a patch comes before one of its neighbours.

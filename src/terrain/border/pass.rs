@@ -25,12 +25,12 @@ impl BorderPass {
         Ok(Self { within: kernel(false)?, across: kernel(true)? })
     }
 
-    /// Prepares the transitions of patches that are stored one after the other in `parts`. A transition is `width` samples
-    /// wide. `neighbours` are indices of earlier patches, counted across all parts.
+    /// Prepares the transitions of patches that are stored one after the other in `parts`. A transition is `width` samples wide.
+    /// `neighbours` holds indices of earlier patches, counted across all parts.
     ///
     /// # Errors
-    /// [`InputError`] as [`super::waves`], for a width that is not in 1..size of a patch, for more neighbours than patches, and
-    /// for parts of different widths or with heights that are too short; [`GpuError`].
+    /// [`InputError`] as [`super::waves`], for a width of 0 or not below a patch's size, for more entries in `neighbours` than
+    /// patches, and for parts of different widths or with heights that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -58,7 +58,7 @@ impl BorderPass {
             let params = BorderParams { size, width, start: starts[*part] };
             starts[*part] += count;
             let Entries { neighbours, order } = &entries[*part];
-            // A buffer bound for writing cannot be bound a second time. The kernel never reads the placeholder.
+            // A buffer that is bound for writing cannot be bound again for reading. The kernel never reads this placeholder.
             let (kernel, others) = if source == part {
                 (&self.within, order.slice().cast())
             } else {
@@ -78,7 +78,7 @@ impl BorderPass {
     }
 }
 
-/// Entries of all visits to one part, one visit after the other.
+/// Kernel inputs for all dispatches that write one part, concatenated in dispatch order.
 struct Entries {
     neighbours: Buffer<[u32; 4]>,
     order: Buffer<u32>,

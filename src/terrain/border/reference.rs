@@ -1,13 +1,13 @@
-//! B's transition area: the CPU reference of `kernels/terrain/border.wgsl`.
+//! Transitions between patches (B's transition area): the CPU reference of `kernels/terrain/border.wgsl`.
 
-/// Moves samples of `patch` (rows of `size`) towards the existing patches to the left, to the right, above and below it. Only
-/// samples within `width` of the shared border move.
+/// Moves samples of `patch` towards the heights of existing neighbours. `patch` has `size` samples per row. `neighbours` holds
+/// the patches to the left, to the right, above and below. Only samples closer than `width` to a shared border move.
 pub fn border(patch: &mut [i32], size: usize, width: u32, neighbours: [Option<&[i32]>; 4]) {
     let last = size - 1;
     for y in 0..size {
         for x in 0..size {
             let sample = &mut patch[y * size + x];
-            // Per border: the sample's distance from it, and the neighbour's sample at that distance on the other side.
+            // Per border: the sample's distance from the border, and the index of the neighbour's sample mirrored at the border.
             let sides = [
                 (x, y * size + (last - x)),
                 (last - x, y * size + (last - x)),
@@ -23,7 +23,7 @@ pub fn border(patch: &mut [i32], size: usize, width: u32, neighbours: [Option<&[
     }
 }
 
-/// Blends linearly from the neighbour's height at distance 0 to the patch's own at distance `width`.
+/// Linear blend: the neighbour's height `theirs` at distance 0, the patch's own height `ours` at distance `width`.
 fn towards(ours: i32, theirs: i32, distance: i32, width: i32) -> i32 {
     let difference = ours - theirs;
     let (quotient, remainder) = (difference.div_euclid(width), difference.rem_euclid(width));

@@ -1,4 +1,4 @@
-//! Sequence of dispatches for the transitions of a batch that is split into several buffers.
+//! Order of dispatches for the transitions of a batch that is split into several buffers (parts).
 
 use std::collections::BTreeMap;
 
@@ -6,19 +6,19 @@ use super::{Neighbours, waves};
 use crate::InputError;
 use crate::terrain::fields::Place;
 
-/// One dispatch: patches of one part move towards neighbours that all lie in one part.
+/// One dispatch: it moves samples of patches in one part towards neighbours that all lie in one part.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Visit {
-    /// Index of the part with the patches.
+    /// Index of the part that holds the patches to change.
     pub part: usize,
-    /// Index of the part with their neighbours.
+    /// Index of the part that holds the neighbours of these patches.
     pub source: usize,
-    /// Index of each patch within its part, with its neighbours' indices within theirs.
+    /// Index of each patch within `part`, and the indices of its four neighbours within `source`.
     pub entries: Vec<(u32, [Option<u32>; 4])>,
 }
 
-/// Dispatches in order, for patches at the given places. A patch whose neighbours all lie in its own part takes one dispatch.
-/// Any other patch takes one dispatch per side, in the kernel's order of sides.
+/// Dispatches in order, for patches at the given places. If all neighbours of a patch lie in the patch's own part, the patch
+/// takes one dispatch. Otherwise it takes one dispatch per side, in the order in which the kernel handles the sides.
 ///
 /// # Errors
 /// [`InputError`] as [`waves`].

@@ -1,4 +1,4 @@
-//! JSON objects, read with serde. Errors name the field, its value and the allowed range.
+//! Reading of JSON objects with serde. Errors name the field, its value and the allowed range.
 
 use std::marker::PhantomData;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::error::json::{message, shown};
 use crate::error::json::{refused_value, unreadable};
 use crate::{Error, InputError};
 
-/// A struct stored as a JSON object. Serde alone would also accept an array of its fields.
+/// Wrapper that reads a struct from a JSON object only. Without it, serde would also accept an array of the struct's fields.
 pub(crate) struct Object<T>(pub(crate) T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
@@ -36,7 +36,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
     }
 }
 
-/// Reads one JSON object. The error names the field that contains the fault, or `what` if it lies outside all fields.
+/// Reads one JSON object. An error names the field that contains the fault, or `what` if the fault lies outside all fields.
 pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> Result<T, InputError> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let object: Object<T> = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
@@ -44,7 +44,7 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
         if matches!(path.as_str(), "." | "?") {
             return unreadable(what, error.inner());
         }
-        // If the text is valid JSON, the fault is a value.
+        // If the text is valid JSON, the fault must be a value, so the error quotes that value.
         let document: Option<Value> = serde_json::from_str(text).ok();
         document
             .and_then(|document| refused_value(&document, &error))
@@ -54,7 +54,7 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
     Ok(object.0)
 }
 
-/// As [`from_json_object`], from parsed JSON.
+/// Converts a parsed JSON object to a `T`, with the same errors as [`from_json_object`].
 #[cfg(feature = "gpu")]
 pub(crate) fn from_json_value<T: DeserializeOwned>(what: &str, value: &Value) -> Result<T, InputError> {
     let object: Object<T> = serde_path_to_error::deserialize(value).map_err(|error| {
@@ -68,9 +68,9 @@ pub(crate) fn from_json_value<T: DeserializeOwned>(what: &str, value: &Value) ->
     Ok(object.0)
 }
 
-/// Reads a value of `T` by its name.
+/// Reads a value of an enum `T` from its variant's name, a JSON string.
 pub(crate) fn named<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
-    // A value that is not a string has no name; the error lists the names.
+    // A value that is not a string is treated as an empty name: the error then lists the valid names.
     let name = match Value::deserialize(deserializer)? {
         Value::String(name) => name,
         _ => String::new(),
@@ -78,7 +78,7 @@ pub(crate) fn named<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer
     T::deserialize(name.into_deserializer())
 }
 
-/// Reads an integer in `LOW..=HIGH`, in either form of JSON: `16` or `16.0`.
+/// Reads an integer in `LOW..=HIGH`. JSON may write the integer with or without a fraction: `16` or `16.0`.
 pub(crate) fn whole<'de, D: Deserializer<'de>, const LOW: u32, const HIGH: u32>(
     deserializer: D,
 ) -> Result<u32, D::Error> {
@@ -88,7 +88,7 @@ pub(crate) fn whole<'de, D: Deserializer<'de>, const LOW: u32, const HIGH: u32>(
     number.as_f64().filter(is_allowed).map(|value| value as u32).ok_or_else(refused)
 }
 
-/// Reads a text file.
+/// Reads a whole text file.
 pub(crate) fn read_text(path: &Path) -> Result<String, Error> {
     std::fs::read_to_string(path).map_err(|error| Error::file(path, error))
 }

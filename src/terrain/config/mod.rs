@@ -18,22 +18,22 @@ use crate::shared::terrain::fixed;
 use crate::shared::terrain::offset;
 use crate::{Error, InputError};
 
-/// Fixed-point one of heights: a height is an integer multiple of 1/65536 unit.
+/// Fixed-point value of 1 height unit: heights are stored as integer multiples of 1/65536 unit.
 pub const HEIGHT_ONE: f64 = fixed::HEIGHT_ONE as f64;
 
-/// World coordinates along the edge of a patch: the world is addressed in 1/4096 of an edge.
+/// Length of a patch's edge in integer world coordinates: one coordinate step is 1/4096 of an edge.
 pub const PATCH_EDGE: i64 = 4096;
 
 /// Largest absolute height, 2^30 − 1 in 1/65536 units. Sums and differences of two heights still fit `i32`.
 pub const HEIGHT_LIMIT: i64 = fixed::HEIGHT_LIMIT as i64;
 
-/// Largest range of offsets, and largest absolute feature height, with smooth interpolation: 2^29 in 1/65536 units.
+/// Limit for smooth interpolation of the offsets' range and of absolute feature heights: 2^29, in 1/65536 units.
 const SMOOTH_LIMIT: i64 = 1 << 29;
 
 /// Largest number of texture tiles along a patch's edge. With more, `f32` texture coordinates could not resolve half a texel.
 const MAX_TILES: f64 = 16_384.0;
 
-/// Distribution of the random offsets; r is the range at a level.
+/// Distribution of the random height offsets. Below, r is the range of the offsets at a level of subdivision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Offset {
@@ -42,12 +42,12 @@ pub enum Offset {
     Signed,
     /// Uniform in [0, r), as in B.
     Positive,
-    /// Sum of four uniforms in [−r, r): nearly Gaussian.
+    /// Sum of four uniform numbers, scaled to [−r, r): nearly Gaussian.
     Gaussian,
 }
 
 impl Offset {
-    /// Value of the shaders' `DISTRIBUTION` for this distribution.
+    /// Value of the shaders' constant `DISTRIBUTION` for this distribution.
     #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         match self {
@@ -58,74 +58,76 @@ impl Offset {
     }
 }
 
-/// Interpolation of a new point from the coarser lattice, before its random offset is added.
+/// How a new point's height is interpolated from the coarser lattice, before the random offset is added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum HeightInterpolation {
-    /// Mean of four neighbours, as in B. It leaves creases along the lines of coarse lattices.
+    /// Mean of four neighbours, as in B. This leaves visible creases along the lines of coarse lattices.
     #[default]
     Linear,
-    /// Four-point interpolation (Dyn, Levin and Gregory, "A 4-point interpolatory subdivision scheme for curve design",
-    /// Computer Aided Geometric Design 1987), without creases. [`Border::Seamless`] only.
+    /// Four-point interpolation, without creases (Dyn, Levin and Gregory, "A 4-point interpolatory subdivision scheme for curve
+    /// design", Computer Aided Geometric Design 1987). Allowed only with [`Border::Seamless`].
     Smooth,
 }
 
-/// Treatment of patch borders.
+/// How heights on the borders of patches are made to fit the neighbouring patches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Border {
-    /// A patch is a window onto the diamond-square surface of the whole plane. Neighbouring patches agree bit for bit, in
+    /// Every patch is a window onto one diamond-square surface of the whole plane. Neighbouring patches agree bit for bit in
     /// heights and slopes, whatever the order of generation.
     #[default]
     Seamless,
-    /// Each patch is generated alone, and its neighbours wrap around (B section 3.3.1).
+    /// Every patch is generated without its neighbours; its own opposite edge replaces them (B section 3.3.1).
     Wrap,
-    /// As [`Border::Wrap`], followed by a transition towards existing neighbours (B section 3.3.1). The value is the
-    /// transition's width in samples. Only in this mode does the result depend on the order of generation.
+    /// Every patch is generated as with [`Border::Wrap`] and then blended towards existing neighbours (B section 3.3.1). The
+    /// value is the width of the transition, in samples. Only in this mode does the result depend on the order of generation.
     Blend(u32),
 }
 
-/// A validated terrain configuration.
+/// Configuration of a terrain. [`TerrainConfig::validate`] checks every field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TerrainConfig {
     /// Samples along a patch's edge: 2^n + 1, n in 1..=12.
     pub patch_size: u32,
     /// Range of the random offsets at the coarsest level, in height units; ≥ 0.
     ///
-    /// **Decided**: the first subdivision has the whole range, as in B's steps 1 and 2 (3.3.1), and so has the lattice of
-    /// `seamless`. B's text also halves the range at the start of each subdivision, the first included.
+    /// **Decided**: the first subdivision uses the whole range, as in B's steps 1 and 2 (3.3.1). The base lattice of `seamless`
+    /// terrain uses the whole range too. B's text, however, halves the range at the start of each subdivision, including the
+    /// first.
     pub scale_factor: f64,
-    /// Any text. The same seed gives the same world at every resolution.
+    /// Seed of the random offsets: any text. The same seed gives the same world at every resolution.
     pub seed: String,
-    /// H ≥ 0: the range of the offsets shrinks by the factor 2^−H per level. Default 1.
+    /// Roughness H ≥ 0: per level, the range of the random offsets shrinks by the factor 2^−H. Default 1.
     pub roughness: f64,
-    /// Levels above the patch, k in 0..=8: points of the coarsest lattice are 2^k patch edges apart. Default 0. `seamless`
-    /// only.
+    /// Number k of subdivision levels that are coarser than a patch, 0 to 8. Points of the coarsest lattice are 2^k patch edges
+    /// apart. Default 0. Must be 0 unless `border` is `seamless`.
     pub coarse_levels: u32,
-    /// Distribution of the offsets. Default `signed`.
+    /// Distribution of the random offsets. Default `signed`.
     pub offset: Offset,
-    /// Interpolation of new points. Default `linear`.
+    /// Interpolation of new points from the coarser lattice. Default `linear`.
     pub interpolation: HeightInterpolation,
-    /// Border mode. Default `seamless`.
+    /// How patches fit their neighbours at the borders. Default `seamless`.
     pub border: Border,
-    /// Heights of the corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1). Default 0. `wrap` and `blend` only.
+    /// Heights of a patch's corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1), in height units. Default 0. Only for `wrap` and
+    /// `blend`.
     pub corners: [f64; 4],
     /// World units between neighbouring samples, > 0. Default 1.
     pub terrain_scale: f64,
-    /// World units that a zone's texture covers before it repeats, at least 1/16384 of a patch's edge. Default `None`:
-    /// (`patch_size` − 1) / 10 units. With B's `terrainScale` that is 10 · `terrain_scale` tiles per patch.
+    /// World units that a zone's texture covers before it repeats; at least 1/16384 of a patch's edge. Default `None`:
+    /// (`patch_size` − 1) / 10 units. With B's `terrainScale` this gives 10 · `terrain_scale` tiles per patch.
     pub texture_tile: Option<f64>,
-    /// Whether steep ground is also textured from the sides (triplanar mapping), so that textures are not stretched there.
-    /// Default `false`.
+    /// Whether steep ground is also textured from the sides (triplanar mapping), which avoids stretched textures there. Default
+    /// `false`.
     pub triplanar: bool,
-    /// Strength of a colour variation over many tiles, which hides that textures repeat, 0 to 1. Default 0.
+    /// Strength of a colour variation that hides the repetition of textures, 0 to 1. Default 0.
     pub variation: f64,
-    /// Zones of ground, 1 to 32. Default four: sand, grass, hill and snow.
+    /// Zones of ground by height and slope, 1 to 32. Default: four zones with sand, grass, hill and snow.
     pub zones: Vec<Zone>,
 }
 
 impl TerrainConfig {
-    /// A configuration with B's three parameters and every other field at its default.
+    /// Configuration with B's three parameters and the default of every other field.
     ///
     /// # Errors
     /// [`InputError`] as [`TerrainConfig::validate`].
@@ -150,11 +152,10 @@ impl TerrainConfig {
         Ok(config)
     }
 
-    /// Reads a JSON file. Texture paths in its zones are relative to the file.
+    /// Reads a configuration from a JSON file. Texture paths in the file's zones are relative to the file.
     ///
     /// # Errors
-    /// [`Error::File`] when the file cannot be read, [`Error::InputFile`] for the errors of
-    /// [`TerrainConfig::from_json`].
+    /// [`Error::File`] when the file cannot be read; [`Error::InputFile`] for the errors of [`TerrainConfig::from_json`].
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         let text = read_text(path)?;
         let mut config =
@@ -163,7 +164,7 @@ impl TerrainConfig {
         Ok(config)
     }
 
-    /// Makes texture paths relative to the file that names them.
+    /// Resolves texture paths relative to the folder of `path`, the file that names the textures.
     pub(crate) fn resolve_textures(&mut self, path: &Path) {
         let folder = path.parent().unwrap_or(Path::new(""));
         for zone in &mut self.zones {
@@ -171,7 +172,7 @@ impl TerrainConfig {
         }
     }
 
-    /// Checks every field. Every function that takes a `TerrainConfig` calls it.
+    /// Checks every field. Every function that takes a `TerrainConfig` makes this check.
     ///
     /// # Errors
     /// [`InputError`] for the first field that is out of bounds.
@@ -229,9 +230,9 @@ impl TerrainConfig {
         }
     }
 
-    /// Refuses a configuration whose heights could exceed 2^30 − 1 (`HEIGHT_LIMIT`). `largest_feature` is the largest absolute
-    /// feature height in 1/65536 units. Smooth heights are clamped to the limit; for them, only overflow before the clamp is
-    /// refused.
+    /// Refuses a configuration whose heights could exceed 2^30 − 1 in 1/65536 units ([`HEIGHT_LIMIT`]). `largest_feature` is the
+    /// largest absolute feature height in the same units. With smooth interpolation, heights are clamped to the limit, so only an
+    /// overflow before the clamp is refused.
     ///
     /// # Errors
     /// [`InputError`] that names `scale_factor` or `precomputed_heights`.
@@ -275,12 +276,12 @@ impl TerrainConfig {
         Ok(())
     }
 
-    /// Exponent n of `patch_size` = 2^n + 1.
+    /// Exponent n, where `patch_size` = 2^n + 1.
     pub(crate) fn exponent(&self) -> u32 {
         (self.patch_size - 1).ilog2()
     }
 
-    /// Number of subdivisions from the coarsest lattice to the samples: L = n + k.
+    /// Number of subdivisions L = n + k: from the coarsest lattice down to the samples.
     pub fn levels(&self) -> u32 {
         self.exponent() + self.coarse_levels
     }
@@ -295,44 +296,45 @@ impl TerrainConfig {
         self.texture_tile.map_or(10.0 * self.terrain_scale, |tile| self.edge_length() / tile)
     }
 
-    /// World units that a texture tile covers.
+    /// Edge length of a texture tile in world units.
     pub(crate) fn tile(&self) -> f64 {
         self.edge_length() / self.tiles_per_patch()
     }
 
-    /// Distance between neighbouring samples in world coordinates.
+    /// Distance between neighbouring samples, in integer world coordinates ([`PATCH_EDGE`] per patch).
     pub(crate) fn sample_spacing(&self) -> i64 {
         PATCH_EDGE >> self.exponent()
     }
 
-    /// Range r_l of the offsets at `level`, in 1/65536 units, rounded to nearest with ties to even.
+    /// Range r_l of the random offsets at level `level`, in 1/65536 height units, rounded to nearest with ties to even.
     pub fn level_range(&self, level: u32) -> u32 {
         self.range(level) as u32
     }
 
-    /// Range of the offsets of edge points at `level`, with smooth interpolation. It is half a step further than the level's
-    /// rounded range (Saupe, "Algorithms for random fractals", in The Science of Fractal Images, 1988).
+    /// Range of the random offsets of edge points at level `level` with smooth interpolation, in 1/65536 height units. It is the
+    /// level's rounded range, reduced by half a level: times 2^(−roughness / 2) (Saupe, "Algorithms for random fractals", in The
+    /// Science of Fractal Images, 1988).
     pub fn edge_range(&self, level: u32) -> u32 {
         (self.range(level) * libm::exp2(-self.roughness / 2.0)).round_ties_even() as u32
     }
 
-    // `libm::exp2` is pure Rust: no platform's C library may affect a bit.
+    // `libm::exp2` is pure Rust. A C library could give different bits on different platforms.
     fn range(&self, level: u32) -> f64 {
         (self.scale_factor * libm::exp2(-self.roughness * f64::from(level)) * HEIGHT_ONE).round_ties_even()
     }
 
-    /// Key of the hash.
+    /// Key of the random number generator, derived from the seed.
     pub fn key(&self) -> [u32; 2] {
         crate::hash::key_of(&self.seed)
     }
 
-    /// Corner heights in 1/65536 units.
+    /// Corner heights as integers in 1/65536 height units.
     pub(crate) fn fixed_corners(&self) -> [i32; 4] {
         self.corners.map(|height| (height * HEIGHT_ONE).round_ties_even() as i32)
     }
 }
 
-/// Checks the distance between neighbouring samples in world units.
+/// Checks that the distance between neighbouring samples is 1e-6 to 1e6 world units.
 pub(crate) fn check_terrain_scale(terrain_scale: f64) -> Result<(), InputError> {
     finite("terrain_scale", terrain_scale, 1e-6, 1e6)
 }

@@ -10,24 +10,24 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::{DespikeBuffers, DespikePass};
 
-/// Replaces a point by the mean of its four neighbours if it differs from that mean by more than `threshold`. Injected points
-/// are left alone. A result depends on samples at most one sample away.
+/// Removal of spikes. A sample that differs from the mean of its four neighbours by more than `threshold` is replaced by this
+/// mean. Injected points stay unchanged. The result at a sample depends only on samples at most one sample away.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Despike {
-    /// Threshold τ in height units, 0 to 16383.
+    /// Largest allowed difference τ from the neighbours' mean, in height units, 0 to 16383.
     pub threshold: f64,
 }
 
 impl Despike {
-    /// Checks the threshold.
+    /// Checks that the threshold is in 0..=16383.
     ///
     /// # Errors
-    /// [`InputError`] that names `despike`.
+    /// [`InputError`] that names `despike.threshold`.
     pub fn validate(&self) -> Result<(), InputError> {
         finite("despike.threshold", self.threshold, 0.0, 16383.0)
     }
 
-    /// Threshold τ in 1/65536 units.
+    /// Threshold τ as an integer, in 1/65536 height units.
     pub fn fixed_threshold(&self) -> i32 {
         (self.threshold * HEIGHT_ONE).round_ties_even() as i32
     }

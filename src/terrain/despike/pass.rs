@@ -13,21 +13,21 @@ use crate::{Error, InputError};
 pub struct DespikeBuffers<'a> {
     /// Read: the windows.
     pub windows: &'a Fields,
-    /// Read: the injected points, which despiking leaves unchanged. Its first grid must be as wide as the
+    /// Read: index of the injected points, which despiking leaves unchanged. The first grid of the index must be as wide as the
     /// windows.
     pub features: &'a FeatureIndex,
     /// Written: the despiked windows, one sample smaller on every side.
     pub cropped: &'a Fields,
 }
 
-/// Removes spikes.
+/// Replaces spikes in windows of heights; see [`Despike`].
 #[derive(Debug, Clone)]
 pub struct DespikePass {
     kernel: Kernel,
 }
 
 impl DespikePass {
-    /// Compiles the pipeline for windows without injected points; it ignores [`DespikeBuffers::features`].
+    /// Compiles the pipeline for windows without injected points. The pass then ignores [`DespikeBuffers::features`].
     ///
     /// # Errors
     /// Shader compilation errors of the driver.
@@ -35,7 +35,7 @@ impl DespikePass {
         Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { features: 0 })? })
     }
 
-    /// Compiles the pipeline for windows with injected points, which the kernel leaves alone.
+    /// Compiles the pipeline for windows with injected points, which the kernel leaves unchanged.
     ///
     /// # Errors
     /// Shader compilation errors of the driver.
@@ -43,11 +43,11 @@ impl DespikePass {
         Ok(Self { kernel: bindings::kernel(gpu, &bindings::Constants { features: 1 })? })
     }
 
-    /// Prepares the despiking of windows.
+    /// Prepares a job that despikes all windows.
     ///
     /// # Errors
-    /// [`InputError`] for a threshold out of bounds, for windows with nothing inside the outermost ring, for
-    /// features of other windows, and for an output that is too short; [`GpuError`].
+    /// [`InputError`] for a threshold out of bounds, for windows with nothing inside the outermost ring, for an index of features
+    /// that is not as wide as the windows, and for an output that is too short; [`GpuError`].
     pub fn prepare(&self, gpu: &Gpu, despike: Despike, buffers: DespikeBuffers<'_>) -> Result<Job, Error> {
         let DespikeBuffers { windows, features, cropped } = buffers;
         despike.validate()?;

@@ -2,8 +2,8 @@
 
 use crate::terrain::fixed::mean_of_four;
 
-/// Despikes a window with `width` samples per row, and drops the outermost ring of samples. `injected(x, y)` tells whether a
-/// point of the window is a feature.
+/// Despikes a window with `width` samples per row. The result lacks the outermost ring of samples. `injected(x, y)` tells whether
+/// a sample of the window is an injected point.
 pub fn despike(
     window: &[i32],
     width: usize,

@@ -1,14 +1,14 @@
-//! Features on the device. Each level has a grid with one bit per point, and, for each word of the grid, the index of the
-//! word's first value (`wgsl/terrain/features.wgsl`).
+//! Index of features on the device. Every grid of the index has one bit per lattice point. For each 32-bit word of a grid, the
+//! index also stores the position of the word's first value (`wgsl/terrain/features.wgsl`).
 
 use crate::gpu::bind::Slice;
 use crate::gpu::{Buffer, Gpu, GpuError};
 
-/// One grid of the index.
+/// One grid of the feature index: one bit per lattice point of each window.
 pub use crate::shared::terrain::features::FeatureGrid;
 use crate::shared::terrain::features::FeatureWord;
 
-/// Features of a batch of windows: several grids of different widths, and the injected values.
+/// Index of the features of a batch of windows. It consists of grids of different widths and of the injected values.
 #[derive(Debug, Clone)]
 pub struct FeatureIndex {
     grids: Vec<FeatureGrid>,
@@ -17,8 +17,8 @@ pub struct FeatureIndex {
 }
 
 impl FeatureIndex {
-    /// Allocates grids of the given widths for `windows` windows, and room for `capacity` values in total. A capacity of 0
-    /// allocates no memory; it is for kernels compiled without features.
+    /// Allocates grids of the given widths for `windows` windows, and memory for `capacity` values in total. With a capacity of 0
+    /// it allocates nothing; use that for kernels compiled without features.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
@@ -36,7 +36,7 @@ impl FeatureIndex {
                     words_per_window: words_per_row * (width + 2),
                     start,
                 };
-                // Wrapping is harmless: kernels compiled without features read none of the words.
+                // Wrapping is harmless here: kernels compiled without features never read these words.
                 start = start.wrapping_add(grid.words_per_window.wrapping_mul(windows));
                 grid
             })
@@ -49,8 +49,8 @@ impl FeatureIndex {
         })
     }
 
-    /// Replaces the features. `points(grid, window)` returns (column, row, height) sorted by row, then column. Coordinates
-    /// count from one point before the window's first.
+    /// Replaces all features. `points(grid, window)` returns (column, row, height), sorted by row and then column. Columns and
+    /// rows count from one point before the window's first point.
     ///
     /// # Errors
     /// [`GpuError::Limit`] when there are more features than the capacity.
@@ -91,7 +91,7 @@ impl FeatureIndex {
         self.heights.write(gpu, &heights)
     }
 
-    /// Grid at `index`, in the order of the widths; a grid without points if there is none.
+    /// Grid number `index`, in the order of the widths given to `new`; an empty grid if there is no such grid.
     pub(crate) fn grid(&self, index: usize) -> FeatureGrid {
         let none = FeatureGrid { width: 0, words_per_row: 0, words_per_window: 0, start: 0 };
         self.grids.get(index).copied().unwrap_or(none)
@@ -105,13 +105,13 @@ impl FeatureIndex {
         self.heights.slice()
     }
 
-    /// Size of the index on the device, in bytes.
+    /// Memory of the index on the device, in bytes.
     pub fn bytes(&self) -> u64 {
         self.words.bytes() + self.heights.bytes()
     }
 }
 
-/// Checks that a `u32` can count the words of all grids.
+/// Checks that the number of words in all grids fits a `u32`.
 fn check_words(widths: &[u32], windows: u32) -> Result<(), GpuError> {
     let words = |width: &u32| (u128::from(*width) + 2).div_ceil(32) * (u128::from(*width) + 2);
     let needed = widths.iter().map(words).sum::<u128>() * u128::from(windows);

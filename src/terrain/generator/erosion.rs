@@ -1,4 +1,4 @@
-//! Erosion of windows, alternating between them and a second buffer.
+//! Erosion of windows on the device. Iterations alternate between the windows' buffer and a second buffer.
 
 use super::Generator;
 use crate::Error;
@@ -8,7 +8,7 @@ use crate::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
 use crate::terrain::thermal::{Thermal, ThermalBuffers};
 
 impl Generator {
-    /// Applies thermal erosion to the first of two buffers.
+    /// Applies thermal erosion to the first of two buffers. Returns both buffers, the one with the result first.
     pub(super) async fn slide(
         &self,
         gpu: &Gpu,
@@ -22,7 +22,7 @@ impl Generator {
         Ok(after(both, thermal.iterations))
     }
 
-    /// Applies hydraulic erosion to the first of two buffers.
+    /// Applies hydraulic erosion to the first of two buffers. Returns both buffers, the one with the result first.
     pub(super) async fn rain(
         &self,
         gpu: &Gpu,
@@ -43,7 +43,7 @@ impl Generator {
     }
 }
 
-/// Orders two buffers after `iterations` alternating iterations: the one with the result first.
+/// Puts the buffer with the result first, after `iterations` iterations that alternate between the two buffers.
 pub(super) fn after([windows, other]: [Fields; 2], iterations: u32) -> [Fields; 2] {
     let width = windows.cropped(iterations).width;
     let [made, rest] = if iterations.is_multiple_of(2) { [windows, other] } else { [other, windows] };

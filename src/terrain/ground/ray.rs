@@ -5,21 +5,22 @@ use glam::DVec3;
 use super::Ground;
 use crate::mesh::ray::distance_to;
 
-/// A hit of the ground by a ray.
+/// Hit of a ray on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundHit {
-    /// Distance in lengths of the ray's direction.
+    /// Distance along the ray, in lengths of the ray's direction vector.
     pub distance: f64,
-    /// Normal of the triangle, pointing up, of any length.
+    /// Upward normal of the hit triangle; not normalized.
     pub normal: DVec3,
 }
 
 impl Ground {
-    /// First hit of a patch by a ray. `limit` is the largest distance, in lengths of the ray's direction. Positions are in
-    /// world units from the patch's first sample, x east, y up, z south. The triangles are the drawn ones, and both of their
-    /// sides are hit. `None` if there is no hit or no such patch.
+    /// First hit of a ray on a patch; `None` if there is no hit or no such patch. The ray is a start `at` and a `direction`.
+    /// Positions are in world units from the patch's first sample: x east, y up, z south. `limit` is the largest distance, in
+    /// lengths of `direction`.
     ///
-    /// The ray is followed from cell to cell, with one test per cell below it.
+    /// The query tests the triangles as they are drawn, from both sides. It follows the ray from cell to cell and tests each cell
+    /// below the ray once.
     pub fn hit(&self, patch: [i32; 2], [at, direction]: [DVec3; 2], limit: f64) -> Option<GroundHit> {
         let field = self.patches.get(&patch)?;
         let cells = self.size as usize - 1;
@@ -37,7 +38,7 @@ impl Ground {
                 let height = field.point(x, z).unwrap_or(0.0);
                 DVec3::new(x as f64 * self.spacing, height, z as f64 * self.spacing) - at
             };
-            // The diagonal runs from the north-eastern corner to the south-western one.
+            // The diagonal of a cell runs from its north-eastern corner to its south-western corner.
             let [first, east, south, last] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
             let hits = [[first, south, east], [east, south, last]].into_iter().filter_map(|[a, b, c]| {
                 let distance = distance_to([a, b, c], direction)?;
@@ -53,7 +54,8 @@ impl Ground {
     }
 }
 
-/// Distances at which a ray enters and leaves the range 0 to `edge` along an axis.
+/// Distances at which a ray enters and leaves the slab from 0 to `edge` along one axis; `None` if the ray is outside and
+/// parallel.
 fn slab(at: f64, direction: f64, edge: f64) -> Option<[f64; 2]> {
     if direction == 0.0 {
         return (0.0..=edge).contains(&at).then_some([f64::NEG_INFINITY, f64::INFINITY]);
@@ -62,12 +64,12 @@ fn slab(at: f64, direction: f64, edge: f64) -> Option<[f64; 2]> {
     Some([a.min(b), a.max(b)])
 }
 
-/// Traversal of the cells along a ray.
+/// Traversal of the grid cells that lie below or above a ray.
 struct Walk {
     cell: [usize; 2],
     /// Number of cells along each axis.
     cells: usize,
-    /// Per axis, the distance at which the next cell begins, and the distance between cell borders.
+    /// Per axis: distance along the ray to the border of the next cell. `step` is the distance between two such borders.
     next: [f64; 2],
     step: [f64; 2],
     forward: [bool; 2],
@@ -77,7 +79,7 @@ impl Walk {
     fn new([at, direction]: [DVec3; 2], from: f64, (spacing, cells): (f64, usize)) -> Self {
         let start = at + from * direction;
         let axes = [(at.x, direction.x, start.x), (at.z, direction.z, start.z)];
-        // The conversion saturates.
+        // The conversion to `usize` saturates, so that huge starts give the last cell.
         let cell = axes.map(|(_, _, start)| ((start / spacing).floor().max(0.0) as usize).min(cells - 1));
         let forward = axes.map(|(_, direction, _)| direction > 0.0);
         let next = std::array::from_fn(|axis| {
@@ -89,7 +91,7 @@ impl Walk {
         Self { cell, cells, next, step, forward }
     }
 
-    /// Advances to the next cell; returns the distance at which it begins.
+    /// Advances to the next cell. Returns the distance along the ray at which that cell begins; `None` at the patch's edge.
     fn step(&mut self) -> Option<f64> {
         let axis = usize::from(self.next[1] < self.next[0]);
         let begins = self.next[axis];
@@ -112,7 +114,8 @@ mod tests {
     use crate::terrain::field::field;
     use crate::terrain::recipe::Recipe;
 
-    /// Every ray hits the same triangle as a search through all triangles, and the ground has the hit's height there.
+    /// Every ray hits the same triangle as a search through all triangles, and the ground's height at the hit equals the hit's
+    /// height.
     #[test]
     fn rays_hit_the_triangles_that_are_drawn() {
         let config = TerrainConfig::new(33, 6.0, "rays").expect("valid");
@@ -154,13 +157,13 @@ mod tests {
         );
     }
 
-    /// Whether a place is so close to an edge that rounding decides which triangle answers.
+    /// Whether a place is so close to a triangle's edge that rounding decides which triangle answers.
     fn is_on_edge(config: &TerrainConfig, place: DVec3) -> bool {
         let [u, v] = [place.x, place.z].map(|at| (at / config.terrain_scale).rem_euclid(1.0));
         [u, v, u + v - 1.0].iter().any(|distance| distance.abs() < 1e-6 || distance.abs() > 1.0 - 1e-6)
     }
 
-    /// The same by a search through all triangles of the patch.
+    /// Distance of the first hit of a ray, found by a search through all triangles of the patch.
     fn nearest(ground: &Ground, [at, direction]: [DVec3; 2]) -> Option<f64> {
         let field = &ground.patches[&[1, -2]];
         let cells = ground.size as usize - 1;

@@ -1,4 +1,4 @@
-//! Batches of windows of any size, split where they exceed a storage binding.
+//! Batches with any number of windows, split into parts that each fit a storage binding.
 
 use super::{HeightBuffers, HeightJob, HeightPass, HeightScratch};
 use crate::gpu::Gpu;
@@ -8,7 +8,7 @@ use crate::terrain::fields::Fields;
 use crate::terrain::window::{Window, Windows};
 use crate::{Error, InputError};
 
-/// A batch of any size. It is split at storage bindings of 128 MiB, and recorded as one.
+/// A generation of any number of windows. The batch is split at storage bindings of 128 MiB and recorded as a whole.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
     jobs: Vec<HeightJob>,
@@ -17,7 +17,7 @@ pub struct HeightBatch {
 }
 
 impl HeightBatch {
-    /// Allocates all buffers for `windows`, and for `feature_capacity` injected points in each part.
+    /// Allocates all buffers for `windows`. Each part of the batch can hold `feature_capacity` injected points.
     ///
     /// # Errors
     /// [`InputError`] as [`HeightPass::prepare`]; [`crate::gpu::GpuError`].
@@ -51,10 +51,10 @@ impl HeightBatch {
         Ok(Self { jobs, fields, scratch })
     }
 
-    /// Sets the patches and features of the next recordings. Patches fill the parts in order.
+    /// Sets the patches and features for the next recordings. Patches fill the parts of the batch in order.
     ///
     /// # Errors
-    /// As [`HeightJob::set`].
+    /// The errors of [`HeightJob::set`].
     pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
         let mut rest = patches;
         for (job, fields) in self.jobs.iter().zip(&self.fields) {
@@ -69,17 +69,17 @@ impl HeightBatch {
         Err(InputError::new("patches.len", patches.len(), bound).into())
     }
 
-    /// Records the generation of all windows.
+    /// Records the generation of all windows in all parts.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.jobs.iter().for_each(|job| job.record(encoder));
     }
 
-    /// The heights, part by part.
+    /// The generated heights, one entry per part of the batch.
     pub fn fields(&self) -> &[Fields] {
         &self.fields
     }
 
-    /// Size of heights and scratch on the device, in bytes, without features.
+    /// Memory of heights and scratch on the device, in bytes, without the index of features.
     pub fn bytes(&self) -> u64 {
         self.fields.iter().map(|fields| fields.heights.bytes()).sum::<u64>() + self.scratch.bytes()
     }

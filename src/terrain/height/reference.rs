@@ -1,4 +1,5 @@
-//! Heights of a window onto the plane: the CPU reference of `kernels/terrain/height.wgsl`, row by row of coarse points.
+//! Heights of a window onto the plane: the CPU reference of `kernels/terrain/height.wgsl`. It works on one row of coarse points
+//! after another.
 
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
@@ -26,7 +27,7 @@ pub fn height(config: &TerrainConfig, features: &Features, window: Window) -> Ve
     grid
 }
 
-/// The finer lattice produced by one subdivision.
+/// One subdivision, from a coarser lattice to the lattice with half its spacing.
 struct Fine<'a> {
     features: &'a Features,
     draw: &'a Draw,
@@ -50,7 +51,7 @@ impl Fine<'_> {
         let mut between = upper.clone();
         let mut beside = upper.clone();
         let x = coarse_spans[0].first;
-        // The first row of squares lies outside the window, and no diamonds lie above it: that row is computed and not stored.
+        // The first row of squares lies outside the window and has no diamonds above it. That row is computed but not stored.
         for y in coarse_spans[1].first..coarse_spans[1].last {
             let (here, below) = (coarse_row(y), coarse_row(y + 1));
             self.diamonds(here, below, x, y, &mut lower);
@@ -69,7 +70,8 @@ impl Fine<'_> {
         fine
     }
 
-    /// Centers of the cells between two coarse rows. The first cell starts at the coarse point (x, y).
+    /// Heights at the centers of the cells between two coarse rows, `above` and `below`. The first cell starts at coarse point
+    /// (x, y).
     fn diamonds(&self, above: &[i32], below: &[i32], x: i64, y: i64, centers: &mut [i32]) {
         for (i, center) in centers.iter_mut().enumerate() {
             *center = mean_of_four(above[i], above[i + 1], below[i], below[i + 1]);
@@ -77,14 +79,14 @@ impl Fine<'_> {
         self.draw_row(centers, 2 * x + 1, 2 * y + 1);
     }
 
-    /// Adds random offsets to the points (x, y), (x + 2, y), … and injects features.
+    /// Adds random offsets to the heights of the points (x, y), (x + 2, y), …, and injects features.
     fn draw_row(&self, heights: &mut [i32], x: i64, y: i64) {
         let step = 2 * self.spacing as u32;
         self.draw.add_row(heights, self.range, world(x, self.spacing), step, world(y, self.spacing));
         self.injected.inject_row(self.features, y, x, 2, heights);
     }
 
-    /// Interleaves two rows, `even` and `odd`, which start at (x, y), and stores the points that lie in the window.
+    /// Interleaves the rows `even` and `odd`, which start at (x, y), and stores the points that lie in the window.
     fn store_row(&self, fine: &mut [i32], y: i64, x: i64, even: &[i32], odd: &[i32]) {
         if !(self.spans[1].first..=self.spans[1].last).contains(&y) {
             return;

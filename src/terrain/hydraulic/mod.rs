@@ -1,6 +1,6 @@
-//! Hydraulic erosion: rain collects in rivers, which carry ground away and deposit it where they slow down. The method is
-//! virtual pipes in integers (after Mei, Decaudin and Hu, "Fast hydraulic erosion simulation and visualization on GPU", Pacific
-//! Graphics 2007).
+//! Hydraulic erosion: rain collects in rivers. The rivers carry ground away, and deposit it where they slow down. The method is
+//! virtual pipes, computed in integers (after Mei, Decaudin and Hu, "Fast hydraulic erosion simulation and visualization on GPU",
+//! Pacific Graphics 2007).
 
 use serde::Deserialize;
 
@@ -15,10 +15,10 @@ pub use crate::shared::terrain::hydraulic::{HydraulicParams, SEDIMENT_LIMIT, WAT
 #[cfg(feature = "gpu")]
 pub use pass::{HydraulicBuffers, HydraulicPass};
 
-/// Largest number of cycles.
+/// Largest number of erosion cycles.
 pub const MAX_ITERATIONS: u32 = 2048;
 
-/// Parameters of rain, rivers and their effect on the ground.
+/// Parameters of hydraulic erosion: rain, rivers and their effect on the ground.
 ///
 /// Each cycle has these steps:
 ///
@@ -29,37 +29,42 @@ pub const MAX_ITERATIONS: u32 = 2048;
 ///
 /// In the last quarter of the cycles the land dries without rain. After the last cycle all sediment settles where it is.
 ///
-/// Lengths are fractions of the spacing of samples (terrainScale), so that a landscape of another scale erodes alike. Ground
-/// and sediment together are conserved to the last bit. A cycle reads samples at most one sample away, so a patch needs as many
-/// samples around it as there are cycles. For example, 300 cycles on a patch of 257² samples begin with windows of 857², eleven
-/// times the patch; larger patches cost less per sample. For the same reason, water comes from at most as many samples away as
-/// there are cycles: longer rivers end.
+/// Lengths are fractions of the distance between samples (terrainScale), so that landscapes of any scale erode alike. The sum of
+/// ground and sediment is conserved to the last bit.
 ///
-/// No configuration overflows. A sample holds at most 1024 height units of water and of sediment. Any excess over this, or over
-/// the largest height, stays where it came from; excess rain is lost.
+/// A cycle reads samples at most one sample away. A patch therefore needs one ring of samples around it per cycle. For example,
+/// 300 cycles on a patch of 257² samples begin with windows of 857², eleven times the patch. The relative cost is lower for
+/// larger patches. For the same reason, water reaches a sample from at most one sample away per cycle, so rivers cannot be longer
+/// than the number of cycles.
+///
+/// No configuration overflows. A sample holds at most 1024 height units of water and 1024 of sediment. Water or sediment above
+/// this limit, and ground above the largest height, stays where it came from. Excess rain is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Hydraulic {
     /// Number of cycles, at most [`MAX_ITERATIONS`]. Default 300.
     #[serde(deserialize_with = "whole::<_, 0, MAX_ITERATIONS>")]
     pub iterations: u32,
-    /// Depth of the rain per cycle, in spacings of samples, 0 to 1. Default 0.001.
+    /// Depth of the rain per cycle, as a fraction of the distance between samples, 0 to 1. Default 0.001.
     pub rain: f64,
     /// Fraction of the water that evaporates per cycle, 0 to 1. Default 0.001.
     pub evaporation: f64,
-    /// Sediment capacity of water, per unit of discharge at a slope of 1; 0 to 1024. Default 100.
+    /// Sediment that water can carry per unit of discharge, at a slope of 1; 0 to 1024. Default 100.
     pub capacity: f64,
-    /// Discharge below which water carries nothing, as the number of samples whose rain it is; 0 to 65536. It decides how far
-    /// from the watershed valleys begin. It also limits the water that spreads to each side whatever the slope. Default 2.
+    /// Discharge below which water carries no sediment, measured as the number of samples whose rain it equals; 0 to 65536.
+    /// Larger values make valleys begin further from the watershed. The threshold also limits the water that spreads to each
+    /// neighbour independently of the slope. Default 2.
     pub threshold: f64,
-    /// Fraction of the lacking sediment that the water takes from the ground per cycle, 0 to 1. Default 0.01.
+    /// Rate of erosion, 0 to 1: if water carries less sediment than it could, this fraction of the difference leaves the ground
+    /// per cycle. Default 0.01.
     pub erosion: f64,
-    /// Fraction of the excess sediment that settles per cycle, 0 to 1. Default 0.02.
+    /// Rate of deposition, 0 to 1: if water carries more sediment than it can, this fraction of the excess settles per cycle.
+    /// Default 0.02.
     pub deposition: f64,
-    /// The steepest stable bank, in degrees, 0 to 89. Default 40.
+    /// Slope of the steepest stable bank, in degrees, 0 to 89. Default 40.
     pub talus: f64,
-    /// Fraction of the height difference between two neighbours that creeps down per cycle, 0 to 1/16. It rounds ridges; the
-    /// larger it is, the further apart are valleys. Default 0.002.
+    /// Rate of creep, 0 to 1/16: the fraction of the height difference between two neighbours that moves downhill per cycle.
+    /// Creep rounds ridges, and larger values put valleys further apart. Default 0.002.
     pub creep: f64,
 }
 
@@ -80,7 +85,7 @@ impl Default for Hydraulic {
 }
 
 impl Hydraulic {
-    /// Checks every field.
+    /// Checks that every field is in its range.
     ///
     /// # Errors
     /// [`InputError`] that names the first field out of bounds, such as `hydraulic.rain`.
@@ -101,13 +106,13 @@ impl Hydraulic {
         Ok(())
     }
 
-    /// Parameters of one cycle, counted from 0, for the kernel and its reference. Windows have `in_width`² samples that are
-    /// `terrain_scale` height units apart.
+    /// Parameters for the kernel and its CPU reference in one cycle. `cycle` counts from 0. Windows have `in_width`² samples,
+    /// which are `terrain_scale` height units apart.
     pub fn params(&self, terrain_scale: f64, cycle: u32, in_width: u32) -> HydraulicParams {
         let fixed = |value: f64, most: i32| value.round_ties_even().min(f64::from(most)) as i32;
         let fraction = |value: f64| fixed(value * 32768.0, 32768);
         let spacing = terrain_scale * HEIGHT_ONE;
-        // No two heights differ by more than twice the limit.
+        // Two heights differ by at most twice the height limit.
         let widest = 2 * HEIGHT_LIMIT as i32;
         let steepest = fixed(spacing, widest).max(1);
         let slope_shift = 17_u32.saturating_sub(steepest.leading_zeros());

@@ -1,4 +1,4 @@
-//! The GPU pass of `kernels/terrain/hydraulic.wgsl`, one cycle per dispatch.
+//! The GPU pass of `kernels/terrain/hydraulic.wgsl`, with one dispatch per cycle.
 
 use super::Hydraulic;
 use super::reference::Flow;
@@ -11,17 +11,18 @@ use crate::terrain::fields::Fields;
 /// Buffers of hydraulic erosion.
 #[derive(Debug, Clone, Copy)]
 pub struct HydraulicBuffers<'a> {
-    /// Read and written: the windows.
+    /// Read and written: the windows to erode.
     pub windows: &'a Fields,
-    /// Written: fields with room for the same number of windows, one sample smaller on every side.
+    /// Written: a second buffer for the cycles to alternate with. It needs memory for the same number of windows, one sample
+    /// smaller on every side.
     pub other: &'a Fields,
-    /// Written: scratch for water and sediment, with room for the samples of `other`.
+    /// Written: scratch memory for water and sediment, at least [`HydraulicPass::flow_points`] elements.
     pub flows: &'a Buffer<Flow>,
-    /// Written: as `flows`.
+    /// Written: second scratch memory for water and sediment, with the same length as `flows`.
     pub other_flows: &'a Buffer<Flow>,
 }
 
-/// Applies hydraulic erosion.
+/// Applies hydraulic erosion to windows of heights; see [`Hydraulic`].
 #[derive(Debug, Clone)]
 pub struct HydraulicPass {
     kernel: Kernel,
@@ -36,17 +37,17 @@ impl HydraulicPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Number of elements that [`HydraulicBuffers::flows`] needs for windows.
+    /// Number of elements that [`HydraulicBuffers::flows`] needs for the given windows.
     pub fn flow_points(windows: &Fields) -> usize {
         windows.points(1)
     }
 
-    /// Prepares all cycles, which alternate between `windows` and `other`. Each cycle drops the outermost ring of samples. The
-    /// result is in `windows` if the number of cycles is even, otherwise in `other`. Heights of windows are at most 2^30 − 1,
-    /// in 1/65536 units, and so are the results.
+    /// Prepares all cycles. They alternate between `windows` and `other`, and each drops the outermost ring of samples. After an
+    /// even number of cycles the result is in `windows`, otherwise in `other`. Heights must not exceed 2^30 − 1 in size, in
+    /// 1/65536 height units; the results stay within this limit too.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for parameters out of bounds, for windows that have too few rings for the cycles, and
+    /// [`InputError`](crate::InputError) for parameters out of bounds, for windows with fewer rings of samples than cycles, and
     /// for a buffer that is too short; [`GpuError`].
     pub fn prepare(
         &self,

@@ -3,12 +3,12 @@
 use crate::shared::terrain::fixed::HEIGHT_LIMIT;
 use crate::shared::terrain::hydraulic::{HydraulicParams, SEDIMENT_LIMIT, WATER_LIMIT};
 
-/// Water state of a sample. The first two words are water and suspended sediment in 1/65536 height units. The other two are the
-/// shares of both that leave in the next cycle, in 1/32768: the third word has west in its low half and east in its high half,
-/// the fourth has north and south.
+/// Water state of a sample. Words 0 and 1 are water and suspended sediment, in 1/65536 height units. Words 2 and 3 are the
+/// fractions of water and sediment that leave through each side in the next cycle, in 1/32768. Word 2 has west in its low half
+/// and east in its high half; word 3 has north and south.
 pub type Flow = [i32; 4];
 
-/// A sample, with its shares towards west, east, north and south.
+/// State of a sample. `shares` are the fractions of water and sediment that leave to the west, east, north and south, in 1/32768.
 #[derive(Debug, Clone, Copy)]
 struct Cell {
     ground: i32,
@@ -17,8 +17,8 @@ struct Cell {
     shares: [i32; 4],
 }
 
-/// Computes one cycle on a window with [`HydraulicParams::in_width`] samples per row. Returns the ground and the flow without
-/// the outermost ring of samples. Heights of at most 2^30 − 1 in size stay so.
+/// Computes one cycle on a window with [`HydraulicParams::in_width`] samples per row. Returns ground and flow without the
+/// outermost ring of samples. If all heights are at most 2^30 − 1 in size, the new heights are too.
 pub fn hydraulic(ground: &[i32], flow: &[Flow], params: &HydraulicParams) -> (Vec<i32>, Vec<Flow>) {
     let width = params.in_width as usize;
     let inner = (width - 2) * (width - 2);
@@ -41,31 +41,31 @@ impl Cell {
         Self { ground, water, sediment, shares: [across & 0xffff, across >> 16, along & 0xffff, along >> 16] }
     }
 
-    /// Height of the water's surface.
+    /// Height of the water's surface, clamped to the height limit.
     #[inline(always)]
     fn surface(self) -> i32 {
         (self.ground + self.water).min(HEIGHT_LIMIT)
     }
 
-    /// Most water that one neighbour may add.
+    /// Largest amount of water that one neighbour may add in this cycle.
     #[inline(always)]
     fn water_room(self) -> i32 {
         (WATER_LIMIT - self.water) >> 2
     }
 
-    /// Most ground, and as much sediment, that one neighbour may add.
+    /// Largest amount of ground that one neighbour may add in this cycle. The same limit applies to added sediment.
     #[inline(always)]
     fn ground_room(self) -> i32 {
         (HEIGHT_LIMIT - self.ground - self.sediment) >> 3
     }
 
-    /// Most sediment that one neighbour may add.
+    /// Largest amount of sediment that one neighbour may add in this cycle.
     #[inline(always)]
     fn sediment_room(self) -> i32 {
         ((SEDIMENT_LIMIT - self.sediment) >> 2).min(self.ground_room())
     }
 
-    /// Water and sediment that leave to a neighbour through one side.
+    /// Water and sediment that flow out to a neighbour through one side.
     #[inline(always)]
     fn leaving(self, side: usize, neighbour: Self) -> [i32; 2] {
         let share = self.shares[side];
@@ -73,7 +73,7 @@ impl Cell {
         [water, part(self.sediment, share).min(neighbour.sediment_room())]
     }
 
-    /// Ground that slides and creeps down to a neighbour.
+    /// Amount of ground that slides and creeps down to a neighbour.
     #[inline(always)]
     fn sliding(self, neighbour: Self, params: &HydraulicParams) -> i32 {
         let step = (self.ground - neighbour.ground).max(0);
@@ -82,7 +82,8 @@ impl Cell {
     }
 }
 
-/// One cycle of one sample, from its neighbours to the west, east, north and south.
+/// Computes one cycle of one sample; `around` are the neighbours to the west, east, north and south. Returns the new ground and
+/// flow.
 #[inline(always)]
 fn cycle(cell: Cell, around: [Cell; 4], params: &HydraulicParams) -> (i32, Flow) {
     let (mut lost, mut gained, mut slid) = ([0; 2], [0; 2], 0);
@@ -106,8 +107,8 @@ fn cycle(cell: Cell, around: [Cell; 4], params: &HydraulicParams) -> (i32, Flow)
     (cell.ground - lifted + slid, [water, sediment + lifted, west | east << 16, north | south << 16])
 }
 
-/// A quarter of a sample's own discharge plus three quarters of the mean outflow of its neighbours. The average makes streams
-/// wider than a sample and lets them run alike in any direction.
+/// Discharge at a sample: a quarter of the sample's own discharge plus three quarters of the mean outflow of its neighbours. The
+/// average makes streams wider than one sample, and independent of the grid's directions.
 #[inline(always)]
 fn discharge(own: i32, around: [Cell; 4]) -> i32 {
     let leaving = |cell: Cell| part(cell.water, cell.shares.into_iter().sum()) >> 3;
@@ -115,8 +116,8 @@ fn discharge(own: i32, around: [Cell; 4]) -> i32 {
     (own >> 2) + eighths + (eighths >> 1)
 }
 
-/// Sediment that a discharge carries down a surface; `falls` are the height differences to the neighbours. The length of a
-/// slope is approximated from its two components: the larger one plus three eighths of the smaller one.
+/// Sediment that water can carry at a given discharge. `falls` are the differences between the water surfaces of the sample and
+/// its four neighbours. The slope is approximated from its two components: the larger one plus three eighths of the smaller one.
 #[inline(always)]
 fn capacity(discharge: i32, falls: [i32; 4], params: &HydraulicParams) -> i32 {
     let [across, along] = [falls[0].max(falls[1]), falls[2].max(falls[3])]
@@ -125,13 +126,13 @@ fn capacity(discharge: i32, falls: [i32; 4], params: &HydraulicParams) -> i32 {
     let rate = ((slope * params.capacity) >> 8).min(1 << 18);
     let driving = (discharge - params.threshold).clamp(0, WATER_LIMIT);
     let high = driving >> 12;
-    // A larger rate exceeds the limit anyway, and its product might overflow.
+    // A larger rate exceeds the limit in any case, and its product could overflow.
     let safe = rate.min(1 << (high.max(1).leading_zeros() - 2));
     (high * safe + (((driving & 4095) * rate) >> 12)).min(SEDIMENT_LIMIT)
 }
 
-/// Ground that goes into suspension; if negative, sediment that settles. Ground sinks no deeper than its lowest neighbour, and
-/// rises no higher than its highest neighbour or the water.
+/// Ground that goes into suspension; negative if sediment settles. Ground does not sink below its lowest neighbour. Deposits do
+/// not rise above the highest neighbour or the water.
 #[inline(always)]
 fn lifted(steps: [i32; 4], water: i32, lacking: i32, params: &HydraulicParams) -> i32 {
     if lacking > 0 {
@@ -142,9 +143,10 @@ fn lifted(steps: [i32; 4], water: i32, lacking: i32, params: &HydraulicParams) -
     -part(-lacking, params.deposition).min((highest >> 3).max(water >> 2))
 }
 
-/// Shares that leave in the next cycle. Each pipe keeps half of its flux and gains a sixteenth of the fall. In addition, a
-/// thirty-second of the water, at most the threshold, spreads through each pipe, so that streams do not run along rows and columns.
-/// The sum is at most three quarters of the water, so that neighbouring samples do not exchange all of it from cycle to cycle.
+/// Fractions of water and sediment that leave through each side in the next cycle. Each virtual pipe keeps half of its flux and
+/// gains a sixteenth of the fall. In addition, 1/32 of the water, at most the threshold, spreads through each pipe, so that
+/// streams do not align with rows and columns. Together at most three quarters of the water leave; otherwise neighbours could
+/// exchange all of their water in every cycle.
 #[inline(always)]
 fn next_shares(cell: Cell, falls: [i32; 4], water: i32, params: &HydraulicParams) -> [i32; 4] {
     let spread = (water >> 5).min(params.threshold);
@@ -159,8 +161,8 @@ fn next_shares(cell: Cell, falls: [i32; 4], water: i32, params: &HydraulicParams
     flux.map(|flux| ((((flux as u32 >> shift) * inverse) >> 16) as i32 * 3) >> 2)
 }
 
-/// Returns ⌊amount · share / 32768⌋ for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most
-/// 2048.
+/// Returns ⌊amount · share / 32768⌋ without overflow. Valid for amounts of 0 to 2^30 with shares of 0 to 32768, and for any
+/// amount with shares of at most 2048.
 #[inline(always)]
 fn part(amount: i32, share: i32) -> i32 {
     (amount >> 15) * share + (((amount & 32767) * share) >> 15)

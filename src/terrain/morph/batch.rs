@@ -1,11 +1,11 @@
-//! Blends over time of whole batches of fields, part by part.
+//! Blends over time between two batches of fields that are split into parts.
 
 use super::{HeightMorphPass, Morph, MorphBuffers, MorphJob};
 use crate::gpu::{Gpu, Upload};
 use crate::terrain::fields::Fields;
 use crate::{Error, InputError};
 
-/// Fields with heights between those of two batches: set the time, then record. It keeps both batches alive.
+/// Fields that blend over time between two batches of fields. Set the time, then record. This value keeps both batches alive.
 #[derive(Debug, Clone)]
 pub struct MorphedFields {
     fields: Vec<Fields>,
@@ -13,12 +13,12 @@ pub struct MorphedFields {
 }
 
 impl MorphedFields {
-    /// Allocates fields for the blend from `from` (time 0) to `to` (time 1). Both must have parts of the same widths and
-    /// counts, as a [`Generator`](crate::terrain::generator::Generator) produces for the same patches. The fields are zero
-    /// until the blend has been recorded.
+    /// Allocates fields for the blend from `from` (time 0) to `to` (time 1). Both must have parts of the same widths and counts.
+    /// A [`Generator`](crate::terrain::generator::Generator) produces such parts for the same patches. The fields are zero until
+    /// the blend has been recorded.
     ///
     /// # Errors
-    /// [`InputError`] for other numbers of parts, widths or counts, and for buffers that are too short;
+    /// [`InputError`] for different numbers of parts, widths or counts, and for buffers that are too short;
     /// [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, from: &[Fields], to: &[Fields]) -> Result<Self, Error> {
         InputError::check_same("to.len", to.len(), from.len(), "as from.len")?;
@@ -30,7 +30,7 @@ impl MorphedFields {
                 let (path, reason) = (format!("to[{part}].{field}"), format!("as from[{part}].{field}"));
                 InputError::check_same(path, to, from, &reason)?;
             }
-            // After erosion a buffer is larger than its fields.
+            // The buffers' lengths are not compared: after erosion a buffer is larger than its fields.
             from.check(&format!("from[{part}]"), 0)?;
             to.check(&format!("to[{part}]"), 0)?;
             let between = Fields::new(gpu, "terrain heights", from.width, from.count)?;
@@ -41,12 +41,12 @@ impl MorphedFields {
         Ok(Self { fields, jobs })
     }
 
-    /// The fields that receive the blend, part by part.
+    /// The fields that receive the blended heights, in the order of the parts.
     pub fn fields(&self) -> &[Fields] {
         &self.fields
     }
 
-    /// Sets the time of the next submission.
+    /// Sets the time at which the next submission blends.
     ///
     /// # Errors
     /// [`InputError`] for a time outside 0..=1; [`crate::gpu::GpuError`].
@@ -55,12 +55,12 @@ impl MorphedFields {
         self.stage(&mut gpu, morph)
     }
 
-    /// Sets the time through `to`.
+    /// Sets the time of the next submission; the upload goes through `to`.
     pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         self.jobs.iter().try_for_each(|job| job.stage(to, morph))
     }
 
-    /// Records the blend.
+    /// Records the blend of all parts at the time that was set.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.jobs.iter().for_each(|job| job.record(encoder));
     }

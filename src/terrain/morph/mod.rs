@@ -1,4 +1,4 @@
-//! A blend of two height fields over time (B section 4.4, `targetHeight`).
+//! Blend of two height fields over time (B section 4.4, `targetHeight`).
 
 use crate::InputError;
 use crate::terrain::config::{TerrainConfig, finite};
@@ -14,8 +14,8 @@ pub use batch::MorphedFields;
 #[cfg(feature = "gpu")]
 pub use pass::{HeightMorphPass, MorphBuffers, MorphJob};
 
-/// A blend of two fields at one time: `from + ⌊(to − from)·time⌋`, in integers. It is exact at both ends, and every device
-/// computes the same bits in between.
+/// Time of a blend between two fields. A blended height is `from + ⌊(to − from)·time⌋`, computed in integers. The result is exact
+/// at both ends, and every device computes the same bits in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Morph {
     /// Time from 0 (the first field) to 1 (the second), rounded to steps of 1/65536.
@@ -23,13 +23,13 @@ pub struct Morph {
 }
 
 impl Default for Morph {
-    /// The first field.
+    /// Time 0: the first field.
     fn default() -> Self {
         Self { time: 0.0 }
     }
 }
 
-/// Checks that fields of `target` can follow those of `config`: both must have the same number of samples in the same places.
+/// Checks that the fields of `config` can be blended into those of `target`: both need the same number and spacing of samples.
 ///
 /// # Errors
 /// [`InputError`] that names `patch_size` or `terrain_scale`.
@@ -47,7 +47,7 @@ impl Morph {
         finite("time", self.time, 0.0, 1.0)
     }
 
-    /// Time in steps of 1/65536.
+    /// The time as an integer, in steps of 1/65536.
     pub fn fixed_time(&self) -> u32 {
         (self.time * 65_536.0).round_ties_even() as u32
     }

@@ -17,7 +17,7 @@ pub struct MorphBuffers<'a> {
     pub heights: &'a Buffer<i32>,
 }
 
-/// Blends two height fields.
+/// Blends two height fields at a given time.
 #[derive(Debug, Clone)]
 pub struct HeightMorphPass {
     kernel: Kernel,
@@ -32,7 +32,7 @@ impl HeightMorphPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares a blend.
+    /// Prepares a blend of all heights of the buffers.
     ///
     /// # Errors
     /// [`InputError`] for buffers of different lengths; [`GpuError`].
@@ -44,7 +44,8 @@ impl HeightMorphPass {
         Ok(self.prepare_first(gpu, buffers, from.len() as u32)?)
     }
 
-    /// Prepares a blend of the first `points` heights, which all buffers hold. It writes whole vectors of four.
+    /// Prepares a blend of the first `points` heights, which every buffer must hold. The kernel writes whole vectors of four
+    /// heights.
     pub(crate) fn prepare_first(
         &self,
         gpu: &Gpu,
@@ -67,11 +68,11 @@ impl HeightMorphPass {
     }
 }
 
-/// A prepared blend: set the time, then record.
+/// A prepared blend of two height fields: set the time, then record.
 pub type MorphJob = ParamsJob<MorphParams>;
 
 impl MorphJob {
-    /// Sets the time of the next submission.
+    /// Sets the time at which the next submission blends.
     ///
     /// # Errors
     /// [`InputError`] for a time outside 0..=1; [`GpuError`].
@@ -79,7 +80,7 @@ impl MorphJob {
         self.stage(&mut &*gpu, morph)
     }
 
-    /// Sets the time through `to`.
+    /// Sets the time of the next submission; the upload goes through `to`.
     pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         morph.validate()?;
         Ok(to.uniform(&self.uniform, &MorphParams { time: morph.fixed_time(), ..self.params })?)

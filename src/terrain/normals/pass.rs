@@ -7,7 +7,7 @@ use crate::shared::terrain::normals::NormalsParams;
 use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
 use crate::terrain::fields::Fields;
 
-/// Computes the slopes and unit normals of height fields.
+/// Computes slopes and unit normals of height fields.
 #[derive(Debug, Clone)]
 pub struct NormalsPass {
     kernel: Kernel,
@@ -22,9 +22,10 @@ impl NormalsPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares the slopes of `windows`, whose samples are `terrain_scale` world units apart. Outputs have one entry per
-    /// sample, except for the outermost ring. `gradients` receives the central differences in 1/65536 units, and `normals`
-    /// three components (x, up, z).
+    /// Prepares a job that computes the slopes and normals of `windows`. Samples are `terrain_scale` world units apart. Both
+    /// outputs have one entry per sample of the windows, without each window's outermost ring. `gradients` receives the central
+    /// differences in 1/65536 height units. `normals` receives three components per sample: x, up, z.
+    /// # Errors
     /// # Errors
     /// [`crate::InputError`] for a spacing out of bounds, for windows with nothing inside the outermost ring, and for outputs
     /// that are too short; [`GpuError`].

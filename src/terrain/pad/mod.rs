@@ -1,5 +1,6 @@
-//! Windows around the patches of a batch. `seamless` terrain generates its windows directly. `wrap` and `blend` gather them
-//! here from the patch itself or from its neighbours, so that the stencils after generation work in every border mode.
+//! Windows around the patches of a batch: each patch with a margin of samples from its neighbours. `seamless` terrain generates
+//! such windows directly. For the border modes `wrap` and `blend`, this module gathers each window from the patch itself or from
+//! its neighbours. Stencil operations after generation then work in every border mode.
 
 use crate::InputError;
 use crate::terrain::config::{Border, TerrainConfig};
@@ -11,11 +12,12 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::PadPass;
 
-/// Indices of the nine patches at and around a patch, row by row. If one is missing, the window repeats the nearest sample that
-/// exists.
+/// Indices of a 3 × 3 block of patches, row by row; entry 4 is the patch in the middle. Where a neighbour is `None`, the window
+/// repeats the nearest existing sample.
 pub type Surround = [Option<usize>; 9];
 
-/// Surroundings of every patch of a batch: for `wrap` the patch itself on every side, for `blend` the patches of the batch.
+/// Surroundings of every patch of a batch. For `wrap` every entry is the patch itself. For `blend` the entries are the adjacent
+/// patches of the batch.
 pub fn surrounds(config: &TerrainConfig, patches: &[[i32; 2]]) -> Vec<Surround> {
     let index: std::collections::HashMap<_, _> =
         patches.iter().enumerate().map(|(index, patch)| (*patch, index)).collect();
@@ -34,7 +36,7 @@ pub fn surrounds(config: &TerrainConfig, patches: &[[i32; 2]]) -> Vec<Surround> 
         .collect()
 }
 
-/// Checks that windows do not extend beyond the adjacent patches.
+/// Checks that a window with `apron` extra samples on each side does not extend beyond the adjacent patches.
 ///
 /// # Errors
 /// [`InputError`] when `apron` is patchSize or more.

@@ -7,7 +7,7 @@ use crate::shared::terrain::pad::{ELSEWHERE, NONE, PadParams};
 use crate::terrain::fields::{Fields, Place, places};
 use crate::{Error, InputError};
 
-/// Gathers windows from patches and their neighbours.
+/// Gathers windows of samples from patches and their neighbours.
 #[derive(Debug, Clone)]
 pub struct PadPass {
     kernel: Kernel,
@@ -22,11 +22,13 @@ impl PadPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares windows that extend `apron` samples beyond their patches, one for each of `surrounds`. It reads `parts`, which
-    /// hold the patches one after the other, and writes `windows`. Indices in `surrounds` count patches across all parts.
+    /// Prepares a job that gathers windows, one for each entry of `surrounds`. A window extends `apron` samples beyond its patch
+    /// on every side. The job reads the patches from `parts`, where they are stored one after the other, and writes `windows`.
+    /// Indices in `surrounds` count patches across all parts.
     /// # Errors
-    /// [`InputError`] when the apron is the size of a patch or more, when a surrounding lacks its own patch or names one beyond
-    /// `parts`, when parts have different widths or heights that are too short, or when `windows` is too short; [`GpuError`].
+    /// [`InputError`] when the apron is not smaller than a patch, when an entry of `surrounds` lacks its own patch or names a
+    /// patch beyond `parts`, when parts have different widths or heights that are too short, or when `windows` is too short;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -60,7 +62,7 @@ impl PadPass {
     }
 }
 
-/// Tile indices for the dispatch that reads `part`; `None` if no tile lies there.
+/// Tile indices for the dispatch that reads `part`; `None` if that part holds none of the tiles.
 fn tiles_in(part: usize, tiles: &[Option<Place>]) -> Option<Vec<u32>> {
     let here = |tile: &Option<Place>| tile.is_some_and(|place| place.part == part);
     tiles.iter().any(here).then(|| {
@@ -74,7 +76,7 @@ fn tiles_in(part: usize, tiles: &[Option<Place>]) -> Option<Vec<u32>> {
     })
 }
 
-/// Checks that every surrounding has its own patch, and that all indices are below `count`.
+/// Checks that every entry of `surrounds` has its own patch, and that all indices are below `count`.
 fn check_surrounds(surrounds: &[Surround], count: usize) -> Result<(), InputError> {
     for (index, around) in surrounds.iter().enumerate() {
         if around[4].is_none() {

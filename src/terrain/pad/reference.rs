@@ -1,7 +1,7 @@
 //! Windows around patches: the CPU reference of `kernels/terrain/pad.wgsl`.
 
-/// Window around a patch, with `size` + 2·`apron` samples per row, from the nine patches at and around it. The middle one must
-/// exist.
+/// Window around a patch, with `size` + 2·`apron` samples per row. `around` holds a 3 × 3 block of patches, row by row, each with
+/// `size`² samples. The patch in the middle must exist.
 pub fn pad(size: usize, apron: usize, around: [Option<&[i32]>; 9]) -> Vec<i32> {
     let width = size + 2 * apron;
     let mut window = Vec::with_capacity(width * width);
@@ -25,8 +25,8 @@ fn sample(size: usize, around: [Option<&[i32]>; 9], x: i64, y: i64) -> i32 {
         }
     };
     let (column, row) = (tile(x), tile(y));
-    // Try the tile itself, then its neighbours in x and in y, and last the patch itself. A missing tile is replaced by
-    // clamping.
+    // Try the tile that contains the sample, then the adjacent tiles in the same column and in the same row, and last the patch
+    // itself. Clamping then replaces the missing tile's samples.
     for (column, row) in [(column, row), (column, 1), (1, row), (1, 1)] {
         if let Some(patch) = around[3 * row + column] {
             let local = |i: i64, tile: usize| (i - last * (tile as i64 - 1)).clamp(0, last) as usize;

@@ -1,4 +1,4 @@
-//! Configurations and recipes in JSON: B's keys and relievo's optional ones.
+//! JSON form of configurations and recipes: B's keys and relievo's optional keys.
 
 use serde::Deserialize;
 
@@ -10,7 +10,7 @@ use crate::terrain::config::{
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::thermal::Thermal;
 
-/// JSON form of a recipe: the configuration's fields, with erosion beside them.
+/// JSON form of a recipe. The fields of the configuration and those of erosion are in one object.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 struct Raw {
@@ -60,7 +60,8 @@ enum RawCorners {
 }
 
 impl RawBorder {
-    /// Converts the border and checks its width here, because an error of an untagged value would quote all of it.
+    /// Converts the border and checks the transition's width. Serde cannot check it, because an error inside an untagged enum
+    /// would quote the whole value.
     fn border(self) -> Result<Border, InputError> {
         match self {
             Self::Named(border) => Ok(border),
@@ -109,11 +110,11 @@ impl Raw {
 }
 
 impl TerrainConfig {
-    /// Reads a configuration from B's JSON. [`Recipe::from_json`] reads erosion too.
+    /// Reads a configuration from B's JSON. Use [`Recipe::from_json`] for text that includes erosion.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not valid JSON of this form, for unknown keys, for values out of bounds, and for
-    /// erosion, which a configuration does not have.
+    /// [`InputError`] for text that is not valid JSON, for unknown or missing keys, for values out of bounds, and for keys of
+    /// erosion.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         let Recipe { config, thermal, hydraulic, thermal_after, .. } = Recipe::from_json(text)?;
         let given = [
@@ -131,20 +132,20 @@ impl TerrainConfig {
 }
 
 impl Recipe {
-    /// Reads a recipe from JSON: the configuration's fields, with erosion beside them. `thermal` and `thermalAfter` are objects
-    /// with `iterations` and `talus`; `hydraulic` is an object with the fields of [`Hydraulic`]. Missing fields have their
+    /// Reads a recipe from JSON: the keys of a configuration, with erosion beside them. `thermal` and `thermalAfter` are objects
+    /// with `iterations` and `talus`. `hydraulic` is an object with the fields of [`Hydraulic`]. Missing optional keys get their
     /// defaults.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not valid JSON of this form, for unknown keys, and for values out of bounds.
+    /// [`InputError`] for text that is not valid JSON, for unknown or missing keys, and for values out of bounds.
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         from_json_object::<Raw>("config", text)?.recipe()
     }
 
-    /// As [`Recipe::from_json`], from parsed JSON.
+    /// Converts parsed JSON to a recipe; see [`Recipe::from_json`].
     ///
     /// # Errors
-    /// As [`Recipe::from_json`].
+    /// [`InputError`], as [`Recipe::from_json`].
     #[cfg(feature = "gpu")]
     pub(crate) fn from_value(value: &serde_json::Value) -> Result<Self, InputError> {
         crate::terrain::config::from_json_value::<Raw>("config", value)?.recipe()

@@ -1,10 +1,10 @@
-//! Heights of a window onto a smoothly interpolated surface of the whole plane, for `seamless` terrain without creases.
+//! Heights of windows onto a smooth surface that covers the whole plane, for `seamless` terrain without creases.
 //!
-//! Centers of cells are interpolated from four by four points of the coarser lattice. Edge points are interpolated from four
-//! points of their line and the four new centers beside them (Dyn, Levin and Gregory, "A 4-point interpolatory subdivision
-//! scheme for curve design", Computer Aided Geometric Design 1987). Random offsets are those of [`height`](super::height), with
-//! a range half a step smaller on edges (Saupe 1988). All arithmetic is on integers, so that every device computes the same
-//! bits.
+//! A cell's center is interpolated from the 4 × 4 surrounding points of the coarser lattice. An edge point is interpolated from
+//! four points on its line and the four new centers on both sides (Dyn, Levin and Gregory, "A 4-point interpolatory subdivision
+//! scheme for curve design", Computer Aided Geometric Design 1987). Random offsets are the same as in [`height`](super::height),
+//! but the range on edges is half a step smaller (Saupe 1988). All arithmetic is on integers, so that every device computes the
+//! same bits.
 
 #[cfg(feature = "gpu")]
 mod pass;

@@ -8,12 +8,13 @@ use crate::terrain::levels::{HeightBuffers, HeightJob, LevelBuffers, LevelPass};
 use crate::terrain::window::Windows;
 use crate::{Error, InputError};
 
-/// Heights of smooth `seamless` windows. A pass is compiled for one distribution and one mode of injection.
+/// Generates heights of smooth `seamless` windows. Each pass is compiled for one distribution of random offsets and one mode of
+/// feature injection.
 #[derive(Debug, Clone)]
 pub struct SmoothPass(pub(in crate::terrain) LevelPass);
 
 impl SmoothPass {
-    /// Compiles the pipeline. `features` is the mode of injection; `None` means that there are no features.
+    /// Compiles the pipeline. `features` is the mode in which features are injected; `None` compiles it without features.
     ///
     /// # Errors
     /// Shader compilation errors of the driver.
@@ -24,12 +25,12 @@ impl SmoothPass {
         Ok(Self(LevelPass { label: "terrain/smooth", kernel, bind, with_features: features.is_some() }))
     }
 
-    /// Prepares the generation of `windows`. `feature_capacity` is the largest number of injected points; a point counts once for
-    /// every window that sees it.
+    /// Prepares the generation of `windows`. `feature_capacity` is the largest number of injected points. A point counts once for
+    /// every window that depends on it.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration that is not smooth or out of bounds, an apron out of bounds, or buffers that are too
-    /// short; [`GpuError`].
+    /// [`InputError`] for a configuration that is not smooth or is out of bounds, for an apron out of bounds, and for buffers
+    /// that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

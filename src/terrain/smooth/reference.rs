@@ -1,5 +1,5 @@
-//! Heights of a window onto the smooth plane: the CPU reference of `kernels/terrain/smooth.wgsl`. It computes the whole window
-//! at once.
+//! Heights of a window onto the smooth plane: the CPU reference of `kernels/terrain/smooth.wgsl`. Each level is computed for the
+//! whole window at once.
 
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
@@ -7,7 +7,8 @@ use crate::terrain::fixed::{Draw, four_point, mean_of_two};
 use crate::terrain::lattice::{Injected, base_lattice, limited, world};
 use crate::terrain::window::{SMOOTH_RIM, Span, Window};
 
-/// Heights of a window, in rows of `window.width(config)` samples. The window must be valid, and the interpolation smooth.
+/// Heights of a window, in rows of `window.width(config)` samples. The window must be valid, and `config.interpolation` must be
+/// `Smooth`.
 pub fn smooth(config: &TerrainConfig, features: &Features, window: Window) -> Vec<i32> {
     let levels = window.levels(config);
     let draw = Draw::new(config);
@@ -30,7 +31,7 @@ pub fn smooth(config: &TerrainConfig, features: &Features, window: Window) -> Ve
     grid
 }
 
-/// The finer lattice produced by one subdivision.
+/// One subdivision, from a coarser lattice to the lattice with half its spacing.
 struct Subdivision<'a> {
     features: &'a Features,
     draw: &'a Draw,
@@ -42,7 +43,7 @@ struct Subdivision<'a> {
     injected: Injected,
 }
 
-/// Rows of values, all of one width.
+/// A grid of values in rows of equal width.
 struct Rows {
     width: usize,
     values: Vec<i32>,
@@ -53,21 +54,22 @@ impl Rows {
         &self.values[at * self.width..][..self.width]
     }
 
-    /// Interpolates between four rows, starting at `first`.
+    /// Interpolates column by column between four rows; the first one is `first`. Results lie midway between the second and third
+    /// row.
     fn between(&self, first: usize) -> Vec<i32> {
         let [a, b, c, d] = [0, 1, 2, 3].map(|row| self.row(first + row));
         (0..self.width).map(|at| four_point(a[at], b[at], c[at], d[at])).collect()
     }
 
-    /// Interpolates between every four values of a row.
+    /// Interpolates along a row: each result lies midway between the middle two of four consecutive values.
     fn along(row: &[i32]) -> Vec<i32> {
         row.windows(4).map(|values| four_point(values[0], values[1], values[2], values[3])).collect()
     }
 }
 
 impl Subdivision<'_> {
-    /// Computes the finer lattice from the coarser one. Indices count from the first coarse point, and cell i lies between the
-    /// points i and i + 1. In rows of `along` and of `centers`, entry i belongs to cell i + 1.
+    /// Computes the finer lattice from the coarser one. Indices count from the first coarse point; cell i lies between points i
+    /// and i + 1. In rows of `along` and `centers`, entry i belongs to cell i + 1.
     fn made(&self, coarse: &[i32]) -> Vec<i32> {
         let points = Rows { width: self.coarse[0].width(), values: coarse.to_vec() };
         let rows = self.coarse[1].width();
@@ -86,8 +88,8 @@ impl Subdivision<'_> {
                 0 => (points.row(row).to_vec(), self.beside(&along, &centers, row)),
                 _ => (self.below(&points, &centers, row), centers.row(row - 1).to_vec()),
             };
-            // Columns of `even` begin at the first coarse point or, below points, at the third. Columns of `odd` begin after
-            // the first cell or the third.
+            // Entry 0 of `even` is at coarse column 0 in rows of coarse points, and at column 3 in rows between them. Entry 0 of
+            // `odd` always belongs to cell 1.
             let skipped = if y.rem_euclid(2) == 0 { 0 } else { 3 };
             for (column, height) in heights.iter_mut().enumerate() {
                 let x = first_x + column as i64;
@@ -98,20 +100,20 @@ impl Subdivision<'_> {
         fine
     }
 
-    /// Centers of the cells below a coarse row, from cell 1 on.
+    /// Heights at the centers of the cells below coarse row `row`, from cell 1 on.
     fn centers_below(&self, along: &Rows, row: usize) -> Vec<i32> {
         self.finished(along.between(row - 1), self.range, [3, 2 * row as i64 + 1])
     }
 
-    /// Points between those of a coarse row, from cell 1 on.
+    /// Heights of the fine points between neighbouring coarse points of row `row`, from cell 1 on.
     fn beside(&self, along: &Rows, centers: &Rows, row: usize) -> Vec<i32> {
-        // Centers of two rows of cells above and two below.
+        // Vertical interpolation between two rows of centers above the point and two rows below.
         let across = centers.between(row - 3);
         let means = along.row(row).iter().zip(across).map(|(one, other)| mean_of_two(*one, other));
         self.finished(means.collect(), self.edge_range, [3, 2 * row as i64])
     }
 
-    /// Points below those of a coarse row, from column 3 on.
+    /// Heights of the fine points midway below the coarse points of row `row`, from column 3 on.
     fn below(&self, points: &Rows, centers: &Rows, row: usize) -> Vec<i32> {
         let down = points.between(row - 1);
         let across = Rows::along(centers.row(row - 1));
@@ -119,8 +121,8 @@ impl Subdivision<'_> {
         self.finished(means.collect(), self.edge_range, [6, 2 * row as i64 + 1])
     }
 
-    /// Adds random offsets and features to interpolated heights. The heights are at every other fine point from `at` on,
-    /// counted from the first coarse point.
+    /// Adds random offsets and features to interpolated heights, and clamps them. The heights belong to every other fine point of
+    /// a row, starting at `at` (counted from the first coarse point).
     fn finished(&self, mut heights: Vec<i32>, range: u32, at: [i64; 2]) -> Vec<i32> {
         let [x, y] = [0, 1].map(|axis| 2 * self.coarse[axis].first + at[axis]);
         heights.iter_mut().for_each(|height| *height = limited(*height));

@@ -1,28 +1,28 @@
-//! Scalar fields over the texels of a tile, and operations on them: blurs, and colours shaded by heights.
+//! Scalar fields over the texels of a texture, and operations on these fields: blurs, and colours shaded by heights.
 
 use rayon::prelude::*;
 
 use super::TEXTURE_SIZE;
 
-/// Texels along an edge.
+/// Number of texels along an edge of a texture.
 const EDGE: usize = TEXTURE_SIZE as usize;
 
 /// One number per texel, row by row.
 pub type Field = Vec<f32>;
 
-/// Evaluates `of` at the texture coordinates of each texel's centre, 0 to 1. The results are row by row.
+/// Evaluates `of` at the centre of every texel, in texture coordinates from 0 to 1. The results are row by row.
 pub fn made<T: Send>(of: impl Fn([f32; 2]) -> T + Sync) -> Vec<T> {
     let middle = |index: usize| (index as f32 + 0.5) / EDGE as f32;
     (0..EDGE * EDGE).into_par_iter().map(|at| of([middle(at % EDGE), middle(at / EDGE)])).collect()
 }
 
-/// Box blur: means of squares of 2 · `radius` + 1 texels along an edge.
+/// Box blur: every texel becomes the mean of a square with 2 · `radius` + 1 texels along an edge. Edges wrap around.
 pub fn blurred(field: &[f32], radius: usize) -> Field {
     let rows = transposed_means(field, radius);
     transposed_means(&rows, radius)
 }
 
-/// Means of 2 · `radius` + 1 texels of a row, with rows and columns exchanged.
+/// Replaces every texel by the mean of 2 · `radius` + 1 texels of its row, and exchanges rows and columns.
 fn transposed_means(field: &[f32], radius: usize) -> Field {
     let mut means = vec![0.0; EDGE * EDGE];
     for (y, row) in field.chunks_exact(EDGE).enumerate() {
@@ -36,7 +36,7 @@ fn transposed_means(field: &[f32], radius: usize) -> Field {
     means
 }
 
-/// Rescales numbers to the range 0 to 1.
+/// Rescales all values linearly to the range 0 to 1.
 pub fn stretched(mut field: Field) -> Field {
     let low = field.iter().copied().fold(f32::MAX, f32::min);
     let high = field.iter().copied().fold(f32::MIN, f32::max);
@@ -44,8 +44,9 @@ pub fn stretched(mut field: Field) -> Field {
     field
 }
 
-/// Texels from heights and sRGB colours, both 0 to 1. Places deeper than their surroundings are darker by `shade`. Large-scale
-/// differences are removed, because they would show that the texture repeats.
+/// Combines heights and sRGB colours, both 0 to 1, into texels with four bytes. Texels that are deeper than their surroundings
+/// become darker; `shade` is the strength. Large-scale differences in colour are reduced, because they would show that the
+/// texture repeats.
 pub fn texels(heights: &[f32], mut colors: Vec<[f32; 3]>, shade: f32) -> Vec<u8> {
     for (radius, strength) in [(2, 1.6), (8, 1.0)] {
         let around = blurred(heights, radius);
@@ -69,14 +70,14 @@ pub fn texels(heights: &[f32], mut colors: Vec<[f32; 3]>, shade: f32) -> Vec<u8>
     colors.iter().zip(heights).flat_map(texel).collect()
 }
 
-/// Colour of a colour ramp at `at`, 0 to 1.
+/// Colour at position `at`, 0 to 1, of a ramp of evenly spaced colours.
 pub fn ramp(colors: &[[f32; 3]], at: f32) -> [f32; 3] {
     let scaled = at.clamp(0.0, 1.0) * (colors.len() - 1) as f32;
     let first = (scaled as usize).min(colors.len() - 2);
     mixed(colors[first], colors[first + 1], scaled - first as f32)
 }
 
-/// Linear mix: `from` at 0, `to` at 1.
+/// Linear interpolation between two colours: `from` at 0, `to` at 1.
 pub fn mixed(from: [f32; 3], to: [f32; 3], at: f32) -> [f32; 3] {
     std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * at)
 }

@@ -1,7 +1,7 @@
-//! Noise that repeats after a tile: gradient noise (Perlin 2002) and cells (Worley 1996). It uses only arithmetic that gives
-//! the same results on every machine.
+//! Noise that repeats after one tile: gradient noise (Perlin 2002) and cellular noise (Worley 1996). Only arithmetic with the
+//! same results on every machine is used.
 
-/// A random word of a lattice point; `key` separates the uses.
+/// Random word for a lattice point. Different keys give independent words.
 pub fn word(key: u32, [x, y]: [u32; 2]) -> u32 {
     let mut word = key.wrapping_mul(0xc2b2_ae3d) ^ x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77);
     for shift in [16, 15] {
@@ -10,18 +10,18 @@ pub fn word(key: u32, [x, y]: [u32; 2]) -> u32 {
     word ^ (word >> 16)
 }
 
-/// A random number, 0 to 1.
+/// Random number from 0 to 1 for a lattice point. Different keys give independent numbers.
 pub fn random(key: u32, at: [u32; 2]) -> f32 {
     (word(key, at) >> 8) as f32 / 16_777_216.0
 }
 
-/// 0 below `low`, 1 above `high`, smooth between them.
+/// Cubic step: 0 below `low`, 1 above `high`, smooth in between.
 pub fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
     let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Gradient noise on a lattice with `periods` cells along the tile's edges, about −1 to 1.
+/// Gradient noise, about −1 to 1. `periods` is the number of lattice cells along the tile's edges.
 pub fn gradient(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
     let (x, y) = (u * periods[0] as f32, v * periods[1] as f32);
     let (cell_x, cell_y) = (x.floor(), y.floor());
@@ -30,7 +30,7 @@ pub fn gradient(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
     let corner = |dx: i32, dy: i32| {
         let word = word(key, [wrapped(cell_x, dx, periods[0]), wrapped(cell_y, dy, periods[1])]);
         let (s, t) = (s - dx as f32, t - dy as f32);
-        // Eight directions of about equal length.
+        // One of eight gradient directions, of about equal length.
         let [long, short] = if word & 4 == 0 { [s, t] } else { [t, s] };
         let signed = |value: f32, bit: u32| if word & bit == 0 { value } else { -value };
         signed(long, 1) * 1.3 + signed(short, 2) * 0.55
@@ -41,8 +41,8 @@ pub fn gradient(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
     mix(mix(corner(0, 0), corner(1, 0), fade_s), mix(corner(0, 1), corner(1, 1), fade_s), fade_t)
 }
 
-/// Octaves of gradient noise, about −1 to 1. Each octave has twice the frequency of the previous one and `gain` times its
-/// weight.
+/// Sum of `count` octaves of gradient noise, about −1 to 1. From one octave to the next, the frequency doubles and the weight is
+/// multiplied by `gain`.
 pub fn octaves(key: u32, periods: [u32; 2], count: u32, gain: f32, at: [f32; 2]) -> f32 {
     let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
     for octave in 0..count {
@@ -53,7 +53,7 @@ pub fn octaves(key: u32, periods: [u32; 2], count: u32, gain: f32, at: [f32; 2])
     sum / total
 }
 
-/// Octaves of noise with sharp ridges, 0 to 1.
+/// Sum of `count` octaves of noise with sharp ridges, 0 to 1.
 pub fn ridges(key: u32, period: u32, count: u32, at: [f32; 2]) -> f32 {
     let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
     for octave in 0..count {
@@ -65,18 +65,18 @@ pub fn ridges(key: u32, period: u32, count: u32, at: [f32; 2]) -> f32 {
     sum / total
 }
 
-/// Cell of a point in Worley noise, with one random feature point per lattice square.
+/// The cell of Worley noise that contains a given point. Every lattice square has one random feature point.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
     /// Distances to the nearest and the second nearest feature point, in edges of a lattice square.
     pub distances: [f32; 2],
-    /// Vector from the nearest feature point, in edges of a lattice square.
+    /// Vector from the nearest feature point to the given point, in edges of a lattice square.
     pub offset: [f32; 2],
-    /// Random word of the cell.
+    /// Random word of the cell, the same for all of its points.
     pub word: u32,
 }
 
-/// The cell of a point.
+/// Finds the cell of Worley noise that contains the texture coordinates (u, v).
 pub fn cell(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> Cell {
     let (x, y) = (u * periods[0] as f32, v * periods[1] as f32);
     let (cell_x, cell_y) = (x.floor(), y.floor());

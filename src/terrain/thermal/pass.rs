@@ -1,4 +1,4 @@
-//! The GPU pass of `kernels/terrain/thermal.wgsl`, one iteration per dispatch.
+//! The GPU pass of `kernels/terrain/thermal.wgsl`, with one dispatch per iteration.
 
 use super::Thermal;
 use crate::Error;
@@ -11,13 +11,14 @@ use crate::terrain::fields::Fields;
 /// Buffers of thermal erosion.
 #[derive(Debug, Clone, Copy)]
 pub struct ThermalBuffers<'a> {
-    /// Read and written: the windows.
+    /// Read and written: the windows to erode.
     pub windows: &'a Fields,
-    /// Written: fields with room for the same number of windows, one sample smaller on every side.
+    /// Written: a second buffer for the iterations to alternate with. It needs memory for the same number of windows, one sample
+    /// smaller on every side.
     pub other: &'a Fields,
 }
 
-/// Applies thermal erosion.
+/// Applies thermal erosion to windows of heights; see [`Thermal`].
 #[derive(Debug, Clone)]
 pub struct ThermalPass {
     kernel: Kernel,
@@ -32,11 +33,11 @@ impl ThermalPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares all iterations, which alternate between `windows` and `other`. Each iteration drops the outermost ring of
-    /// samples. The result is in `windows` if the number of iterations is even, otherwise in `other`.
+    /// Prepares all iterations. They alternate between `windows` and `other`, and each drops the outermost ring of samples. After
+    /// an even number of iterations the result is in `windows`, otherwise in `other`.
     ///
     /// # Errors
-    /// [`crate::InputError`] for parameters out of bounds, for windows that have too few rings for the iterations, and for a
+    /// [`crate::InputError`] for parameters out of bounds, for windows with fewer rings of samples than iterations, and for a
     /// buffer that is too short; [`GpuError`].
     pub fn prepare(
         &self,

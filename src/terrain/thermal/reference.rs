@@ -1,7 +1,7 @@
 //! Thermal erosion: the CPU reference of `kernels/terrain/thermal.wgsl`.
 
-/// One iteration on a window with `width` samples per row, without the outermost ring of samples. `threshold` is the largest
-/// stable difference, in 1/65536 units.
+/// Applies one iteration to a window with `width` samples per row. The result lacks the outermost ring of samples. `threshold` is
+/// the largest stable difference between neighbours, in 1/65536 height units.
 pub fn thermal(window: &[i32], width: usize, threshold: i32) -> Vec<i32> {
     let mut field = Vec::with_capacity((width - 2) * (width - 2));
     for y in 1..width - 1 {
@@ -21,7 +21,8 @@ pub fn thermal(window: &[i32], width: usize, threshold: i32) -> Vec<i32> {
     field
 }
 
-/// Amount that a sample receives from a neighbour that is `difference` higher.
+/// Amount of material that a sample receives from a neighbour which is higher by `difference`; negative if the neighbour is
+/// lower.
 #[inline(always)]
 fn slide(difference: i32, threshold: i32) -> i32 {
     let excess = (difference.abs() - threshold).max(0) >> 3;

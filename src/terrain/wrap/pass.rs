@@ -8,13 +8,13 @@ use crate::terrain::levels::{HeightBuffers, HeightJob, LevelBuffers, LevelPass};
 use crate::terrain::window::Windows;
 use crate::{Error, InputError};
 
-/// Diamond-square heights of patches that are generated alone. A pass is compiled for one distribution and one mode of
-/// injection.
+/// Generates diamond-square heights of single patches. Each pass is compiled for one distribution of random offsets and one mode
+/// of feature injection.
 #[derive(Debug, Clone)]
 pub struct WrapPass(pub(in crate::terrain) LevelPass);
 
 impl WrapPass {
-    /// Compiles the pipeline. `features` is the mode of injection; `None` means that there are no features.
+    /// Compiles the pipeline. `features` is the mode in which features are injected; `None` compiles it without features.
     ///
     /// # Errors
     /// Shader compilation errors of the driver.
@@ -25,11 +25,12 @@ impl WrapPass {
         Ok(Self(LevelPass { label: "terrain/wrap", kernel, bind, with_features: features.is_some() }))
     }
 
-    /// Prepares the generation of `count` patches into an output of patchSize² heights per patch. `feature_capacity` is the
-    /// largest number of injected points. The scratch must have been made for windows without an apron.
+    /// Prepares the generation of `count` patches. The output receives patchSize² heights per patch. `feature_capacity` is the
+    /// largest number of injected points. `buffers.scratch` must have been made for windows without an apron.
     ///
     /// # Errors
-    /// [`InputError`] for a `seamless` configuration or one out of bounds, or buffers that are too short; [`GpuError`].
+    /// [`InputError`] for a `seamless` configuration, for a configuration out of bounds, and for buffers that are too short;
+    /// [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

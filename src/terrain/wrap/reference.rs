@@ -67,7 +67,7 @@ impl Torus {
             let first = if (y / half).is_multiple_of(2) { half } else { 0 };
             for x in (first..size).step_by(step) {
                 let at = |x: usize, y: usize| grid[y * size + x];
-                // The left neighbour of column 0 is column S − 1 − half, and so on.
+                // Neighbours wrap around: the left neighbour of column 0 is column `last` − half.
                 let before = |i: usize| if i == 0 { self.last - half } else { i - half };
                 let after = |i: usize| if i == self.last { half } else { i + half };
                 let mean = mean_of_four(at(before(x), y), at(after(x), y), at(x, before(y)), at(x, after(y)));

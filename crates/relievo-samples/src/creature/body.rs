@@ -1,5 +1,4 @@
-//! The creature's mesh: closed tubes around its chains of bones, about 5,000 vertices, each with up to four
-//! influences.
+//! Mesh of the creature: closed tubes around chains of bones. It has about 5,000 vertices, each with up to four influences.
 
 use std::collections::HashMap;
 
@@ -12,13 +11,13 @@ use relievo::asset::mesh::solved_tangents;
 use super::bones::{Kind, Part, Side};
 use super::tube::{Section, Surface, Tube};
 
-/// The largest number of influences of a vertex.
+/// Largest number of bones that may influence a vertex.
 const MAX: usize = 4;
 
-/// The mesh, for a skin of all bones. `positions` are the positions of the bones at rest.
+/// Builds the creature's mesh for a skin of all bones. `positions` are the bones' positions at rest, in the model's space.
 ///
 /// # Errors
-/// None in practice: the mesh is checked like any other.
+/// Never fails in practice: the mesh is checked like any other mesh.
 pub fn body(parts: &[Part], positions: &[DVec3]) -> Result<Mesh, InputError> {
     let mut body = Body { parts, positions, surface: Surface::default() };
     body.trunk();
@@ -46,7 +45,7 @@ impl Body<'_> {
         self.positions[self.bone(kind) as usize]
     }
 
-    /// A cross-section beside a bone's joint, in the model's axes.
+    /// Cross-section of a tube near the joint of a bone. `offset` is from the joint, in the model's axes.
     fn section(&self, kind: Kind, offset: [f64; 3], radii: [f64; 2]) -> Section {
         Section { center: self.position(kind) + DVec3::from(offset), radii, bone: self.bone(kind) }
     }
@@ -55,8 +54,8 @@ impl Body<'_> {
         self.surface.add(&Tube { sections, reference, sides, rings, cap, blend });
     }
 
-    /// A chain of thin bones that begins at `inside`, within the part from which it grows, and ends at
-    /// `beyond`, past its last joint.
+    /// Adds a tube around a chain of thin bones. It begins inside the body, at the first joint minus `inside`, and ends at the
+    /// last joint plus `beyond`.
     fn shoot(
         &mut self,
         kinds: &[Kind],
@@ -106,7 +105,7 @@ impl Body<'_> {
         }
     }
 
-    /// Gives a bone near the surface a part of the weight of the vertices around it.
+    /// Moves part of the weight of nearby vertices, from index `first` on, to a bone near the surface.
     fn soften(&mut self, first: usize, kind: Kind) {
         let (bone, center) = (self.bone(kind), self.position(kind));
         let surface = &mut self.surface;
@@ -221,7 +220,7 @@ impl Body<'_> {
     }
 }
 
-/// Adds tangents, and normals that are equal on both sides of seams.
+/// Converts a surface to a mesh: adds tangents, and normals that are equal on both sides of texture seams.
 fn mesh(surface: Surface, bones: usize) -> Result<Mesh, InputError> {
     let positions: Vec<[f32; 3]> =
         surface.positions.iter().map(|position| position.to_array().map(|x| x as f32)).collect();
@@ -240,7 +239,7 @@ fn mesh(surface: Surface, bones: usize) -> Result<Mesh, InputError> {
     })
 }
 
-/// The strongest influences, at most `MAX`.
+/// Merges influences of the same bone and keeps the strongest ones, at most `MAX`.
 fn strongest(mut influences: Vec<Influence>) -> Vec<Influence> {
     let mut merged: Vec<Influence> = Vec::new();
     for influence in influences.drain(..).filter(|influence| influence.weight > 1e-3) {
@@ -254,7 +253,7 @@ fn strongest(mut influences: Vec<Influence>) -> Vec<Influence> {
     merged
 }
 
-/// Smooth normals that vertices at one position share.
+/// Smooth normals; vertices at the same position get the same normal.
 fn welded_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
     let welded = weld(positions);
     let indices: Vec<u32> = indices.iter().map(|index| welded[*index as usize]).collect();
@@ -262,7 +261,7 @@ fn welded_normals(positions: &[[f32; 3]], indices: &[u32]) -> Vec<[f32; 3]> {
     welded.iter().map(|first| normals[*first as usize]).collect()
 }
 
-/// For each vertex, the first vertex at its position.
+/// Index of the first vertex at the same position, for each vertex.
 pub fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
     let mut first = HashMap::new();
     let bits = |position: &[f32; 3]| position.map(|x| (x + 0.0).to_bits());

@@ -1,8 +1,8 @@
-//! The creature's bones.
+//! Skeleton of the creature: roles, names and rest transforms of the bones.
 
 use relievo::asset::transform::Transform;
 
-/// A side of the body.
+/// Left or right side of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     Left,
@@ -12,13 +12,13 @@ pub enum Side {
 impl Side {
     const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
-    /// +1 on the left, where x is positive; −1 on the right.
+    /// Sign of x on this side: +1 on the left, −1 on the right.
     pub fn sign(self) -> f64 {
         if self == Self::Left { 1.0 } else { -1.0 }
     }
 }
 
-/// The role of a bone; numbers count away from the trunk.
+/// Role of a bone in the body. Within a chain of bones, numbers count from the trunk outwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     Root,
@@ -50,7 +50,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The variant and its fields in snake case, such as `finger_left_0_1`.
+    /// Name of the bone: the variant and its fields in snake case, such as `finger_left_0_1`.
     pub fn name(self) -> String {
         let mut name = String::new();
         for letter in format!("{self:?}").chars() {
@@ -67,14 +67,14 @@ impl Kind {
     }
 }
 
-/// A bone with its role.
+/// A bone with its role, parent and rest transform.
 pub struct Part {
     pub kind: Kind,
     pub parent: Option<u32>,
     pub rest: Transform,
 }
 
-/// All bones in depth-first order.
+/// All bones of the creature, in depth-first order.
 pub fn parts() -> Vec<Part> {
     let mut body = Body(Vec::with_capacity(153));
     let root = body.add(Kind::Root, None, [0.0; 3]);
@@ -107,8 +107,8 @@ impl Body {
         self.0.len() as u32 - 1
     }
 
-    /// A chain of `count` bones: the first at `first` in its parent's space, each other one at `next` from the
-    /// one before.
+    /// Adds a chain of `count` bones and returns the last one. The first bone is at `first` in the space of `parent`; every other
+    /// bone is at `next` in the space of the bone before.
     fn chain(
         &mut self,
         parent: u32,
@@ -139,7 +139,7 @@ impl Body {
         let x = side.sign() as f32;
         let clavicle = self.add(Kind::Clavicle(side), Some(chest), [0.03 * x, 0.02, 0.02]);
         let upper = self.add(Kind::UpperArm(side), Some(clavicle), [0.15 * x, 0.0, -0.02]);
-        // The arms hang down.
+        // At rest the arms hang down.
         self.0[upper as usize].rest.rotation = turn([0.0, 0.0, 1.0], -1.25 * side.sign()).map(|v| v as f32);
         self.add(Kind::UpperArmTwist(side), Some(upper), [0.14 * x, 0.0, 0.0]);
         let forearm = self.add(Kind::Forearm(side), Some(upper), [0.28 * x, 0.0, 0.0]);
@@ -168,7 +168,7 @@ impl Body {
     }
 }
 
-/// The quaternion of a rotation by `angle` radians about a unit axis.
+/// Quaternion (x, y, z, w) of a rotation by `angle` radians about a unit axis.
 pub fn turn(axis: [f64; 3], angle: f64) -> [f64; 4] {
     let (sine, cosine) = (libm::sin(angle / 2.0), libm::cos(angle / 2.0));
     [axis[0] * sine, axis[1] * sine, axis[2] * sine, cosine]

@@ -1,10 +1,10 @@
-//! The built-in creature: a biped with a tail, ears, feelers and a crest, with 153 bones like A's test model (A
-//! section 13), and with the clips `walk`, `idle` and `wave`. The code in this folder generates it, the same
-//! bits on every machine, so that tests and demonstrations need no file.
+//! The built-in creature: a biped with a tail, ears, feelers and a crest. It has 153 bones, like A's test model (A section 13),
+//! and the clips `walk`, `idle` and `wave`. The code in this folder generates it, so that tests and demonstrations need no file.
+//! The result is the same bits on every machine.
 //!
-//! It is 1.8 m tall, stands at the origin, faces +Z and has its left side at +X. Its tracks have 3 to 33 keys,
-//! as the motion needs, each at times of its own, with step, linear or spline interpolation. Many bones have
-//! fewer than three tracks, and some have none.
+//! The creature is 1.8 m tall, stands at the origin, faces +Z, and has its left side at +X. Its tracks have 3 to 33 keys,
+//! depending on the motion. Every track has its own key times and step, linear or spline interpolation. Many bones have fewer
+//! than three tracks, and some have none.
 
 use bones::{Part, parts};
 use motion::CLIPS;
@@ -18,10 +18,10 @@ mod bones;
 mod motion;
 mod tube;
 
-/// The creature with its three clips, one skin of all bones, and one mesh of about 5,000 vertices that follows it.
+/// Generates the creature: three clips, a skin with all bones, and a mesh of about 5,000 vertices that follows the skin.
 ///
 /// # Errors
-/// None in practice: the parts are checked like those of any other model.
+/// Never fails in practice: the model is checked like any other model.
 pub fn creature() -> Result<Model, InputError> {
     let parts = parts();
     let bone = |part: &Part| Bone { name: part.kind.name(), parent: part.parent, rest: part.rest };
@@ -49,7 +49,7 @@ pub fn creature() -> Result<Model, InputError> {
     })
 }
 
-/// For each bone, the matrix from its space into the model's, at rest.
+/// Matrix from each bone's space to the model's space, at rest.
 fn rest_models(skeleton: &Skeleton) -> Vec<glam::DMat4> {
     let mut models: Vec<glam::DMat4> = Vec::with_capacity(skeleton.len());
     for bone in skeleton.bones() {
@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(names.len(), 153, "names differ");
         assert_eq!(model.clips.iter().map(Clip::name).collect::<Vec<_>>(), ["walk", "idle", "wave"]);
         assert!(model.skins[0].validate(&model.skeleton).is_ok());
-        // At rest the palette consists of identities.
+        // At rest, model matrix times inverse bind matrix is the identity for every bone.
         let rest = local_to_model(&model.skeleton, &model.skeleton.rest());
         for (model, bind) in rest.iter().zip(&model.skins[0].inverse_binds) {
             let [x, y, z] = [bind[12], bind[13], bind[14]];
@@ -138,7 +138,7 @@ mod tests {
         for step in 0..60 {
             let [left, right] = feet(step as f32 / 60.0);
             let later = feet((step as f32 / 60.0 + 0.5) % 1.0);
-            // Half a cycle later the other foot is where this one was.
+            // Half a cycle later, the right foot is where the left foot is now.
             assert!((left[2] - later[1][2]).abs() < 0.02 && (left[1] - later[1][1]).abs() < 0.02);
             strides = [strides[0].max(left[2] - right[2]), strides[1].max(right[2] - left[2])];
             assert!(left[1] > -0.02 && right[1] > -0.02, "a foot below the ground");
@@ -184,7 +184,7 @@ mod tests {
         let mesh = &model.meshes[0];
         assert_eq!(mesh.validate(&model.skins), Ok(()));
         assert!((4500..=5500).contains(&mesh.vertices()), "{}", mesh.vertices());
-        // Each edge of the welded surface has one triangle on either side.
+        // The welded surface is closed: each edge belongs to one triangle in each direction.
         let welded = body::weld(&mesh.positions);
         let mut edges = std::collections::HashMap::new();
         for triangle in mesh.indices.chunks_exact(3) {
@@ -195,7 +195,7 @@ mod tests {
             }
         }
         assert!(edges.iter().all(|([a, b], count)| *count == 1 && edges.get(&[*b, *a]) == Some(&1)));
-        // Triangles face outwards: the volume is that of a person, with overlaps counted twice.
+        // Triangles face outwards: the volume is positive and similar to a person's. Overlaps count twice.
         let volume = |triangle: &[u32]| {
             let [a, b, c] =
                 [0, 1, 2].map(|corner| glam::Vec3::from(mesh.positions[triangle[corner] as usize]));
@@ -203,7 +203,7 @@ mod tests {
         };
         let volume: f32 = mesh.indices.chunks_exact(3).map(volume).sum();
         assert!((0.05..0.12).contains(&volume), "{volume}");
-        // A vertex has up to four influences.
+        // Number of vertices that follow each bone.
         let mut followed = vec![0_usize; model.skeleton.len()];
         mesh.influences.all().iter().for_each(|influence| followed[influence.bone as usize] += 1);
         let idle =

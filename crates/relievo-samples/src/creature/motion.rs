@@ -1,4 +1,4 @@
-//! The creature's motion: sine waves along and about axes, sampled into keys.
+//! Animation of the creature: sine waves that move, turn or scale bones, sampled into keys.
 
 use std::f64::consts::TAU;
 
@@ -6,15 +6,14 @@ use relievo::asset::clip::{BoneKeys, Interpolation, Keys};
 
 use super::bones::{Kind, Part, Side, turn};
 
-/// The motion of a bone in a clip.
+/// Function that gives the motion of each bone in a clip.
 type MotionOf = fn(Kind) -> Motion;
 
-/// The clips of the creature: their names, their durations in seconds, and how each bone moves.
+/// Clips of the creature: name, duration in seconds, and the motion of each bone.
 pub const CLIPS: [(&str, f64, MotionOf); 3] =
     [("walk", 1.0, walk), ("idle", 4.0, idle), ("wave", 2.0, greet)];
 
-/// A sine `offset + amplitude · sin(2π(cycles·t + phase))` along or about an axis, with t from 0 to 1 over the
-/// clip.
+/// Sine wave `offset + amplitude · sin(2π(cycles·t + phase))` along or about an axis. t runs from 0 to 1 over the clip.
 #[derive(Clone, Copy)]
 struct Wave {
     axis: [f64; 3],
@@ -29,7 +28,7 @@ impl Wave {
         self.offset + self.amplitude * libm::sin(TAU * (self.cycles * t + self.phase))
     }
 
-    /// The same wave with `offset` added.
+    /// The same wave with its offset set to `offset`.
     fn shifted(self, offset: f64) -> Self {
         Self { offset, ..self }
     }
@@ -47,10 +46,10 @@ fn wave(axis: [f64; 3], amplitude: f64, phase: f64) -> Wave {
     Wave { axis, offset: 0.0, amplitude, cycles: 1.0, phase }
 }
 
-/// Waves, and the number of segments between keys; 0 without a track.
+/// Number of segments between keys, and the waves that are added up. With 0 segments there is no track.
 type Waves = (usize, Vec<Wave>);
 
-/// The motion of one bone in a clip.
+/// Motion of one bone in a clip: rotation, translation, scale, and whether the bone blinks.
 #[derive(Default)]
 pub struct Motion {
     turns: Waves,
@@ -68,12 +67,12 @@ impl Motion {
         Self { moves: (keys, moves.into()), ..self }
     }
 
-    /// Swelling is smooth, so it uses splines.
+    /// Adds a motion of scale. Its keys are splines, because swelling is smooth.
     fn swelling(self, keys: usize, swells: impl Into<Vec<Wave>>) -> Self {
         Self { swells: (keys, swells.into()), ..self }
     }
 
-    /// The tracks of a bone in a clip of `duration` seconds.
+    /// Tracks of the bone `part` in a clip of `duration` seconds.
     pub fn keys(&self, duration: f64, part: &Part) -> BoneKeys {
         let [translation, scale] = [part.rest.translation, part.rest.scale].map(|rest| rest.map(f64::from));
         let Self {
@@ -93,7 +92,7 @@ impl Motion {
     }
 }
 
-/// Evenly spaced linear keys; the last equals the first.
+/// Evenly spaced keys with linear interpolation. The last key equals the first, so that clips loop.
 fn line(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Keys {
     let at = |key: usize| value((key % stretches) as f64 / stretches as f64).map(|v| v as f32);
     Keys {
@@ -103,7 +102,7 @@ fn line(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Key
     }
 }
 
-/// Spline keys at growing distances, to exercise uneven times. Tangents are those of the motion.
+/// Keys with spline interpolation and the motion's own tangents. Distances between keys grow, to exercise uneven times.
 fn spline(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> Keys {
     let time = |key: usize| {
         let even = key as f64 / stretches as f64;
@@ -120,7 +119,7 @@ fn spline(duration: f64, stretches: usize, value: impl Fn(f64) -> [f64; 4]) -> K
     keys
 }
 
-/// Eyes close for a tenth of a second, in steps.
+/// Scale track of an eye, with step interpolation: closed for a tenth of a second, otherwise open.
 fn blink(duration: f64) -> Keys {
     let [open, closed] = [[1.0, 1.0, 1.0, 0.0], [1.0, 0.1, 1.0, 0.0]];
     Keys {
@@ -139,7 +138,7 @@ fn along(rest: [f64; 3], waves: &[Wave], t: f64) -> [f64; 4] {
     value
 }
 
-/// The rest rotation followed by the waves in turn, in the parent's space.
+/// Rotation in the parent's space: the rest rotation, then one rotation per wave in order.
 fn turned(rest: [f32; 4], waves: &[Wave], t: f64) -> [f64; 4] {
     waves.iter().fold(rest.map(f64::from), |rotation, wave| product(turn(wave.axis, wave.at(t)), rotation))
 }
@@ -153,16 +152,16 @@ fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     ]
 }
 
-/// The sign of a leg's swing: one leg is ahead when the other is behind.
+/// Phase of a leg's swing, in cycles. The legs are half a cycle apart: one is in front when the other is behind.
 fn step(side: Side) -> f64 {
     if side == Side::Left { 0.0 } else { 0.5 }
 }
 
-/// One stride of both legs. Legs point down, so a negative turn about x swings them forward.
+/// Walking: one stride of each leg. Legs point down at rest, so a negative rotation about x swings them forward.
 fn walk(kind: Kind) -> Motion {
     let small = |at: usize| 0.01 * at as f64;
     match kind {
-        // The creature walks in place: the pelvis sways, and the root does not move.
+        // The creature walks in place: the pelvis sways, but the root does not move.
         Kind::Root => Motion::default(),
         Kind::Pelvis => Motion::turning(16, [wave(Y, 0.08, 0.25), wave(Z, 0.04, 0.0)])
             .moving(16, [wave(Y, 0.02, 0.0).times(2.0).shifted(0.01), wave(X, 0.015, 0.0)]),
@@ -216,7 +215,7 @@ fn walk(kind: Kind) -> Motion {
     }
 }
 
-/// The creature breathes and looks around.
+/// Idling: the creature breathes and looks around.
 fn idle(kind: Kind) -> Motion {
     let breath = |amplitude: f64, phase: f64| wave(X, amplitude, phase).times(2.0);
     match kind {
@@ -253,7 +252,7 @@ fn idle(kind: Kind) -> Motion {
     }
 }
 
-/// The right arm is raised, with its forearm and fingers waving; the rest breathes faster.
+/// Greeting: the right arm is raised, and its forearm and fingers wave. The other bones breathe faster than in `idle`.
 fn greet(kind: Kind) -> Motion {
     let is_right = |side: Side| side == Side::Right;
     match kind {

@@ -1,36 +1,36 @@
-//! Closed tubes around chains of bones, of which the creature's body consists.
+//! Closed tubes around chains of bones. The creature's body consists of such tubes.
 
 use glam::DVec3;
 use relievo::asset::influences::Influence;
 
-/// A cross-section through which a tube passes.
+/// A cross-section of a tube: an ellipse through which the tube passes.
 #[derive(Debug, Clone, Copy)]
 pub struct Section {
-    /// Its center.
+    /// Center of the ellipse, in metres.
     pub center: DVec3,
-    /// The radii across the tube's reference direction and along it.
+    /// Radii of the ellipse, in metres: first across the tube's reference direction, then along it.
     pub radii: [f64; 2],
-    /// The bone that the tube follows from this section on.
+    /// Bone that the tube follows from this section to the next.
     pub bone: u32,
 }
 
-/// A tube through cross-sections, with rounded ends.
+/// A tube through a series of cross-sections, with rounded ends.
 pub struct Tube<'a> {
-    /// The sections; at least two.
+    /// Cross-sections in order; at least two.
     pub sections: &'a [Section],
-    /// The direction of the second radii, after projection onto the plane perpendicular to the tube.
+    /// Direction of the second radius of every section, after projection onto the plane perpendicular to the tube.
     pub reference: DVec3,
-    /// Vertices around the tube.
+    /// Number of vertices around the tube.
     pub sides: usize,
-    /// Rings between two sections.
+    /// Number of rings of vertices per pair of neighbouring sections.
     pub rings: usize,
-    /// Rings of each rounded end, including its pole.
+    /// Number of rings in each rounded end, including the pole.
     pub cap: usize,
-    /// The length, in metres, over which the influence of one bone passes into the next one's.
+    /// Length in metres over which the influence passes from one bone to the next.
     pub blend: f64,
 }
 
-/// Vertices and triangles before normals are computed.
+/// Vertices and triangles, before normals are computed.
 #[derive(Default)]
 pub struct Surface {
     pub positions: Vec<DVec3>,
@@ -39,10 +39,10 @@ pub struct Surface {
     pub indices: Vec<u32>,
 }
 
-/// The length in metres that one tile of the texture covers.
+/// Length in metres that one tile of the texture covers on the surface.
 const TILE: f64 = 0.25;
 
-/// A ring of the tube: its position, radii, and distance along the tube in metres.
+/// A ring of vertices: center, radii, and distance along the tube in metres.
 #[derive(Clone, Copy)]
 struct Ring {
     center: DVec3,
@@ -51,7 +51,7 @@ struct Ring {
 }
 
 impl Surface {
-    /// Adds a tube.
+    /// Adds the vertices and triangles of a tube.
     pub fn add(&mut self, tube: &Tube<'_>) {
         let (rings, starts) = tube.rings();
         let first = self.positions.len();
@@ -63,7 +63,7 @@ impl Surface {
             let [across, upright] = tube.axes(&rings, at);
             for side in 0..=tube.sides {
                 let turn = side as f64 / tube.sides as f64;
-                // The two columns of the seam have equal positions, to the bit.
+                // The first and the last column of vertices form the seam. Their positions must be equal to the bit.
                 let angle = std::f64::consts::TAU * (side % tube.sides) as f64 / tube.sides as f64;
                 let [x, y] = [ring.radii[0] * libm::cos(angle), ring.radii[1] * libm::sin(angle)];
                 self.positions.push(ring.center + across * x + upright * y);
@@ -76,7 +76,7 @@ impl Surface {
             for side in 0..tube.sides {
                 let [a, b] = [corner(ring, side), corner(ring, side + 1)];
                 let [c, d] = [corner(ring + 1, side + 1), corner(ring + 1, side)];
-                // A pole has one triangle per side.
+                // At a pole there is one triangle per side instead of two.
                 if ring > 0 {
                     self.indices.extend([a, b, d]);
                 }
@@ -89,7 +89,7 @@ impl Surface {
 }
 
 impl Tube<'_> {
-    /// The rings from pole to pole, and the distance along the tube at which each section lies, in metres.
+    /// All rings from pole to pole, and for each section its distance along the tube in metres.
     fn rings(&self) -> (Vec<Ring>, Vec<f64>) {
         let mut rings: Vec<Ring> = Vec::new();
         let mut starts = Vec::new();
@@ -113,7 +113,7 @@ impl Tube<'_> {
         (start, starts)
     }
 
-    /// The point on a Catmull–Rom curve from a section to the next.
+    /// Center and radii at t, 0 to 1, on a Catmull–Rom curve from a section to the next.
     fn between(&self, section: usize, t: f64) -> (DVec3, [f64; 2]) {
         let all = self.sections;
         let at = |offset: usize| &all[(section + offset).saturating_sub(1).min(all.len() - 1)];
@@ -126,7 +126,7 @@ impl Tube<'_> {
         (DVec3::new(center(0), center(1), center(2)), [radius(0), radius(1)])
     }
 
-    /// Unit vectors of the two radii of a ring.
+    /// Unit vectors along the two radii of ring `at`.
     fn axes(&self, rings: &[Ring], at: usize) -> [DVec3; 2] {
         let (before, after) = (rings[at.saturating_sub(1)], rings[(at + 1).min(rings.len() - 1)]);
         let direction = (after.center - before.center).normalize();
@@ -134,7 +134,8 @@ impl Tube<'_> {
         [across, direction.cross(across)]
     }
 
-    /// The bones around a distance along the tube, each with the fraction that it covers of a window there.
+    /// Bones that influence the distance `along` the tube. The weight of a bone is its fraction of a window with length `blend`
+    /// around that distance.
     fn influences(&self, starts: &[f64], along: f64) -> Vec<Influence> {
         let (low, high) = (along - self.blend / 2.0, along + self.blend / 2.0);
         let owned = |at: usize| {
@@ -148,7 +149,7 @@ impl Tube<'_> {
     }
 }
 
-/// A rounded end, from a ring to its pole.
+/// Rings of a rounded end, from the tube's last ring to the pole. `inner` is the ring before the last one.
 fn cap(steps: usize, ring: Ring, inner: Ring) -> Vec<Ring> {
     let outward = (ring.center - inner.center).normalize();
     let depth = ring.radii[0].min(ring.radii[1]);
@@ -156,7 +157,7 @@ fn cap(steps: usize, ring: Ring, inner: Ring) -> Vec<Ring> {
     (1..=steps)
         .map(|step| {
             let angle = std::f64::consts::FRAC_PI_2 * step as f64 / steps as f64;
-            // A pole is a single point, to the bit.
+            // All vertices of a pole must have the same position, to the bit.
             let shrink = if step == steps { 0.0 } else { libm::cos(angle) };
             let beyond = depth * libm::sin(angle);
             Ring {

@@ -1,20 +1,20 @@
-//! A brick wall in running bond.
+//! Height map of a brick wall in running bond: every second course is shifted by half a brick.
 
 use super::noise::{Noise, cell, random};
 use super::{Pattern, Sample, blend, blend_color, shade, smooth_step};
 
-/// Courses per tile; even, so that every second course is shifted across the seam too.
+/// Number of courses (rows of bricks) per tile. It must be even, so that courses also alternate across the tile's seam.
 const COURSES: usize = 8;
 
-/// Bricks per course.
+/// Number of bricks per course.
 const BRICKS: usize = 4;
 
-/// Widths of a joint, of the rounded edge and of the rounded corner, in tiles.
+/// Width of a joint, width of a brick's rounded edge, and radius of a brick's rounded corner, in tiles.
 const JOINT: f64 = 0.015;
 const BEVEL: f64 = 0.011;
 const CORNER: f64 = 0.010;
 
-/// Burnt clay from dark to light.
+/// Colours of burnt clay from dark to light, in sRGB, 0 to 255.
 const CLAY: [[f64; 3]; 3] = [[112.0, 54.0, 44.0], [153.0, 75.0, 56.0], [180.0, 101.0, 73.0]];
 const MORTAR: [f64; 3] = [171.0, 163.0, 149.0];
 
@@ -36,7 +36,7 @@ impl Bricks {
     }
 }
 
-/// The brick at a point: its cell, and the point relative to its center, in tiles.
+/// Brick at a point: the column and course of its cell, and the point relative to the brick's center, in tiles.
 fn brick(u: f64, v: f64) -> ([usize; 2], [f64; 2]) {
     let (course, y) = cell(v * COURSES as f64, COURSES);
     let shift = 0.5 * (course % 2) as f64;
@@ -44,7 +44,7 @@ fn brick(u: f64, v: f64) -> ([usize; 2], [f64; 2]) {
     ([column, course], [(x - 0.5) / BRICKS as f64, (y - 0.5) / COURSES as f64])
 }
 
-/// How far a point lies inside a rectangle with rounded corners; negative outside.
+/// Distance by which a point lies inside a rectangle with rounded corners; negative outside. `half` are half its edges.
 fn depth_inside(offset: [f64; 2], half: [f64; 2]) -> f64 {
     let [x, y] = [0, 1].map(|axis| offset[axis].abs() - half[axis] + CORNER);
     let (beyond_x, beyond_y) = (x.max(0.0), y.max(0.0));
@@ -60,7 +60,7 @@ impl Pattern for Bricks {
         let half = [0.5 / BRICKS as f64, 0.5 / COURSES as f64];
         let half = [half[0] - 0.5 * JOINT - 0.002 * shrink_x, half[1] - 0.5 * JOINT - 0.0015 * shrink_y];
         let (wear, grain) = (self.wear.signed(u, v), self.grain.signed(u, v));
-        // Edges crumble where the wear is strongest.
+        // Edges of bricks crumble where the wear is strongest.
         let inside = depth_inside(offset, half) - 0.006 * (wear - 0.25).max(0.0);
         let fraction = (inside / BEVEL).clamp(0.0, 1.0);
         let tilt = 0.5 * ((tilt_x - 0.5) * offset[0] + (tilt_y - 0.5) * offset[1]);

@@ -1,22 +1,22 @@
-//! A pavement of rounded stones: the cells around jittered points (Worley 1996), with the corners between
-//! neighbours rounded off.
+//! Height map of a pavement of rounded stones. Stones are the cells around jittered points (Worley 1996); corners between
+//! neighbouring stones are rounded off.
 
 use super::noise::{Noise, cell, random};
 use super::{Pattern, Sample, blend, blend_color, shade, smooth_step};
 
-/// Stones along an edge; even, so that every second row is shifted across the seam too.
+/// Number of stones along an edge of the tile. It must be even, so that shifted rows also alternate across the tile's seam.
 const STONES: usize = 10;
 
-/// How far a stone's center is shifted to the left or right of its cell's, and how far it is jittered from
-/// there, in cells.
+/// Distances in cells: the horizontal shift of a stone's center from its cell's center, alternating left and right by row; and
+/// the largest random jitter on top of the shift.
 const SHIFT: f64 = 0.25;
 const JITTER: f64 = 0.24;
 
-/// Half of the gap, and the width of the rounded rim, in cells.
+/// Half the width of the gap between stones, and the width of a stone's rounded rim, in cells.
 const GAP: f64 = 0.035;
 const RIM: f64 = 0.36;
 
-/// Neighbours closer than this, in cells, round off the corner between them.
+/// Distance in cells below which two neighbouring borders are joined by a rounded corner.
 const ROUNDING: f64 = 0.24;
 
 const STONE: [[f64; 3]; 3] = [[96.0, 97.0, 102.0], [134.0, 131.0, 126.0], [150.0, 136.0, 118.0]];
@@ -31,12 +31,12 @@ pub struct Cobbles {
     patches: Noise,
 }
 
-/// The stone at a point.
+/// The stone that contains a point.
 struct Stone {
     id: [usize; 2],
-    /// The point relative to the stone's center, in cells.
+    /// Vector from the given point to the stone's center, in cells.
     offset: [f64; 2],
-    /// Distance from the stone's border, in cells.
+    /// Distance of the point from the stone's border, in cells.
     border: f64,
 }
 
@@ -57,7 +57,8 @@ impl Cobbles {
         }
     }
 
-    /// From a point in cell `[x, y]` to the center of the stone `step` cells away.
+    /// Index of the stone `step` cells away from cell `[x, y]`, and the vector from a point in that cell to the stone's center,
+    /// in cells.
     fn towards(&self, [x, y]: [usize; 2], point: [f64; 2], step: [i32; 2]) -> ([usize; 2], [f64; 2]) {
         let wrapped =
             |index: usize, step: i32| (index + STONES).saturating_add_signed(step as isize) % STONES;
@@ -68,8 +69,7 @@ impl Cobbles {
 
     fn stone(&self, u: f64, v: f64) -> Stone {
         let ((x, s), (y, t)) = (cell(u * STONES as f64, STONES), cell(v * STONES as f64, STONES));
-        // Centers stay away from the edges of their cells, so that two cells on every side contain every
-        // neighbour.
+        // Centers are away from the edges of their cells, so all neighbouring stones are within two cells.
         let steps = || (-2..=2).flat_map(|y| (-2..=2).map(move |x| [x, y]));
         let all = || steps().map(|step| self.towards([x, y], [s, t], step));
         let square = |[x, y]: [f64; 2]| x * x + y * y;
@@ -90,7 +90,7 @@ impl Cobbles {
     }
 }
 
-/// A smooth minimum: less than both arguments where they are close.
+/// Smooth minimum: less than both arguments if they differ by less than `ROUNDING`, otherwise the smaller argument.
 fn smooth_minimum(a: f64, b: f64) -> f64 {
     let overlap = (ROUNDING - (a - b).abs()).max(0.0) / ROUNDING;
     a.min(b) - 0.25 * ROUNDING * overlap * overlap
@@ -106,7 +106,7 @@ impl Pattern for Cobbles {
             (self.bumps.signed(u, v), self.grain.signed(u, v), self.patches.at(u, v));
         let fraction = ((stone.border - GAP) / RIM).clamp(0.0, 1.0);
         let tilt = 0.22 * ((tilt_x - 0.5) * stone.offset[0] + (tilt_y - 0.5) * stone.offset[1]);
-        // A quarter of a circle: steep at the gap, flat at the top.
+        // Profile of a quarter circle: steep at the gap, flat at the top.
         let dome = (fraction * (2.0 - fraction)).sqrt();
         let top = 0.90 - 0.16 * rise + tilt + 0.05 * bumps + 0.018 * grain;
         let gap = 0.13 + 0.08 * bumps + 0.05 * grain;

@@ -1,11 +1,11 @@
-//! Lines of text as distances to their outlines, which gives edges of any width at any size.
+//! Lines of text as distances to the letters' outlines. With distances, edges can have any width at any resolution.
 
 use ab_glyph::{Font, FontRef, OutlineCurve, Point};
 
-/// Straight segments per curve.
+/// Number of straight segments that replace a curve.
 const PIECES: usize = 8;
 
-/// A line of text around a center.
+/// A line of text that is centered on a given point.
 #[derive(Debug, Clone)]
 pub struct Line {
     glyphs: Vec<Glyph>,
@@ -15,13 +15,13 @@ pub struct Line {
 struct Glyph {
     low: [f64; 2],
     high: [f64; 2],
-    /// The end points of straight segments, which form closed outlines.
+    /// Straight segments of the glyph's closed outlines, each as its two end points.
     edges: Vec<[[f64; 2]; 2]>,
 }
 
 impl Line {
-    /// Sets `text` `width` wide, advances included, and stretched by `stretch` vertically; capitals are centered
-    /// on `middle`.
+    /// Lays out `text`, `width` wide including the advances of all letters, and stretched vertically by `stretch`. Capital
+    /// letters are centered on `middle`.
     pub fn new(text: &str, middle: [f64; 2], width: f64, stretch: f64) -> Self {
         let font =
             FontRef::try_from_slice(epaint_default_fonts::HACK_REGULAR).expect("the font of the crate");
@@ -48,8 +48,8 @@ impl Line {
         Self { glyphs }
     }
 
-    /// The distance to the nearest outline: positive inside the letters, negative outside. At points further
-    /// than `margin` outside, a value just below −`margin`.
+    /// Distance from `position` to the nearest outline: positive inside letters, negative outside. The result is never below
+    /// −`margin`.
     pub fn depth_inside(&self, position: [f64; 2], margin: f64) -> f64 {
         let near = |glyph: &&Glyph| {
             (0..2).all(|axis| {
@@ -60,9 +60,9 @@ impl Line {
     }
 }
 
-/// Splits a curve into straight segments.
+/// Approximates a curve by straight segments.
 fn edges(curve: &OutlineCurve, position: impl Fn(Point) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
-    // Lines and parabolas are cubic curves too.
+    // A quadratic curve is converted to an equal cubic curve.
     let controls = match *curve {
         OutlineCurve::Line(a, b) => return vec![[position(a), position(b)]],
         OutlineCurve::Quad(a, b, c) => {
@@ -82,7 +82,7 @@ fn edges(curve: &OutlineCurve, position: impl Fn(Point) -> [f64; 2]) -> Vec<[[f6
 }
 
 impl Glyph {
-    /// `None` if there are no edges.
+    /// Creates a glyph from its segments and computes its bounds. `None` if there are no segments.
     fn new(edges: Vec<[[f64; 2]; 2]>) -> Option<Self> {
         let points = || edges.iter().flatten();
         let bound = |pick: fn(f64, f64) -> f64, axis: usize| points().map(|point| point[axis]).reduce(pick);

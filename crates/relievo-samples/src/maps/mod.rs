@@ -1,18 +1,17 @@
 //! Generated height maps with matching colours, for tests, demonstrations and first steps without a file.
 //!
-//! Each is a square tile that repeats without a seam under [`Address::Wrap`](relievo::ops::surface::Address::Wrap), of
-//! any size, and has the same bits on every machine: the code uses only `+ − × ÷`, square roots and
-//! comparisons, which IEEE 754 defines to the last bit, and randomness is counter-based ([`relievo::ops::hash`]).
+//! Each map is a square tile of any size. It repeats without a seam under
+//! [`Address::Wrap`](relievo::ops::surface::Address::Wrap), and is the same bits on every machine. The code uses only `+ − × ÷`,
+//! square roots and comparisons, which IEEE 754 defines to the last bit. Randomness is counter-based ([`relievo::ops::hash`]).
 //!
 //! | map | what it shows |
 //! |---|---|
 //! | [`Bricks`](BuiltInMap::Bricks) | running bond with bevelled edges: flat tops, steep flanks, deep joints |
-//! | [`Cobbles`](BuiltInMap::Cobbles) | rounded stones: slopes of every steepness, hardly a plane |
-//! | [`Text`](BuiltInMap::Text) | raised and cut letters: fine detail, as in B's close-ups |
-//! | [`Posts`](BuiltInMap::Posts) | posts of 2 to 4 texels at size 256: a search in steps walks past them (B figure 3.6) |
+//! | [`Cobbles`](BuiltInMap::Cobbles) | rounded stones: slopes of every steepness, almost no flat parts |
+//! | [`Text`](BuiltInMap::Text) | raised and carved letters: fine detail, as in B's close-ups |
+//! | [`Posts`](BuiltInMap::Posts) | posts of 2 to 4 texels at size 256, which a search in steps misses (B figure 3.6) |
 //!
-//! The letters are those of the typeface Hack (MIT and Bitstream Vera licences), which the crate
-//! `epaint_default_fonts` carries.
+//! The letters are from the typeface Hack (MIT and Bitstream Vera licences), which the crate `epaint_default_fonts` contains.
 
 use std::str::FromStr;
 
@@ -28,39 +27,39 @@ mod noise;
 mod posts;
 mod text;
 
-/// A height map that needs no file.
+/// A generated height map with matching colours, which needs no file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BuiltInMap {
-    /// A brick wall in running bond, eight courses of four bricks.
+    /// A brick wall in running bond: eight courses of four bricks.
     Bricks,
-    /// A pavement of a hundred rounded stones.
+    /// A pavement of a hundred rounded stones (10 × 10).
     Cobbles,
-    /// A slab with a raised word, a cut line below it and a cut frame.
+    /// A slab with a raised word, a carved line of text below it, and a carved frame.
     Text,
-    /// Thin tall posts on a low floor.
+    /// Thin tall posts on a low floor, 8 × 8 of them.
     Posts,
 }
 
-/// The tile at one point.
+/// Height and colour of a map at one point.
 #[derive(Debug, Clone, Copy)]
 struct Sample {
-    /// Height, 0 to 1 up to rounding.
+    /// Height from 0 to 1; rounding may exceed this range slightly.
     height: f64,
     /// Colour in sRGB, 0 to 255.
     color: [f64; 3],
 }
 
-/// A tile as a function of position, with period 1 in `u` (right) and `v` (down).
+/// A map as a function of position. It repeats with period 1 in `u` (to the right) and `v` (down).
 trait Pattern: Sync {
     fn at(&self, u: f64, v: f64) -> Sample;
 }
 
 impl BuiltInMap {
-    /// Every map.
+    /// All built-in maps.
     pub const ALL: [Self; 4] = [Self::Bricks, Self::Cobbles, Self::Text, Self::Posts];
 
-    /// The map's name in lower case, as [`FromStr`] accepts it.
+    /// Name of the map in lower case, as [`FromStr`] accepts it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bricks => "bricks",
@@ -70,19 +69,20 @@ impl BuiltInMap {
         }
     }
 
-    /// Heights of a tile of `size` × `size` texels.
+    /// Heights of the map, as a tile of `size` × `size` texels.
     ///
     /// # Errors
-    /// [`InputError`] for a size outside 1 to [`MAP_EDGE`].
+    /// [`InputError`] for a size that is not in 1..=[`MAP_EDGE`].
     pub fn height_map(self, size: u32) -> Result<HeightMap, InputError> {
         let heights = self.samples(size, |sample| sample.height.clamp(0.0, 1.0) as f32)?;
         HeightMap::new(size, size, heights)
     }
 
-    /// Colours of the same tile: sRGB without light or shadow, opaque, row by row from the top left.
+    /// Colours of the map, as a tile of `size` × `size` texels: opaque sRGB without light or shadow, row by row from the top
+    /// left.
     ///
     /// # Errors
-    /// As [`BuiltInMap::height_map`].
+    /// [`InputError`] as [`BuiltInMap::height_map`].
     pub fn albedo(self, size: u32) -> Result<RgbaImage, InputError> {
         let texels = self.samples(size, |sample| {
             let [r, g, b] = sample.color.map(|channel| (channel + 0.5) as u8);
@@ -92,7 +92,7 @@ impl BuiltInMap {
         Ok(RgbaImage::from_fn(size, size, at))
     }
 
-    /// Evaluates `texel` at the center of every texel, row by row.
+    /// Evaluates the map at the center of every texel, and passes each sample to `texel`. The results are row by row.
     fn samples<T: Send>(self, size: u32, texel: impl Fn(Sample) -> T + Sync) -> Result<Vec<T>, InputError> {
         if !(1..=MAP_EDGE).contains(&size) {
             return Err(InputError::new("size", size, format!("must be in 1..={MAP_EDGE} texels")));
@@ -127,22 +127,22 @@ impl FromStr for BuiltInMap {
     }
 }
 
-/// Interpolates from `a` (at 0 or less) to `b` (at 1 or more).
+/// Linear interpolation: `a` for fractions of 0 or less, `b` for fractions of 1 or more.
 fn blend(a: f64, b: f64, fraction: f64) -> f64 {
     a + (b - a) * fraction.clamp(0.0, 1.0)
 }
 
-/// As [`blend`], for each channel.
+/// Linear interpolation of two colours, channel by channel, with the fraction clamped to 0..=1.
 fn blend_color(a: [f64; 3], b: [f64; 3], fraction: f64) -> [f64; 3] {
     std::array::from_fn(|channel| blend(a[channel], b[channel], fraction))
 }
 
-/// A colour multiplied by a factor near 1.
+/// Multiplies a colour by a factor near 1, and clamps its channels to 0..=255.
 fn shade(color: [f64; 3], factor: f64) -> [f64; 3] {
     color.map(|channel| (channel * factor).clamp(0.0, 255.0))
 }
 
-/// 0 below `from`, 1 above `to`, smooth between.
+/// Smooth cubic step: 0 below `from`, 1 above `to`.
 fn smooth_step(from: f64, to: f64, at: f64) -> f64 {
     let t = ((at - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
@@ -198,7 +198,7 @@ mod tests {
         }
     }
 
-    /// The hashes are the same on every machine. If they change, so does the input of every user's figures.
+    /// Known hashes of all maps, equal on every machine. A change of a hash also changes the input of every user's measurements.
     #[test]
     fn maps_are_the_same_bits_everywhere() {
         let known = [
@@ -216,7 +216,7 @@ mod tests {
         }
     }
 
-    /// Across the tile's edge, heights change no more than they do inside.
+    /// Across the tile's edge, heights change no more than they change inside the tile.
     #[test]
     fn maps_tile() {
         for map in BuiltInMap::ALL {
@@ -242,7 +242,7 @@ mod tests {
         }
     }
 
-    /// Measures runs of texels above half of the posts' height, across each row and down each column.
+    /// Measures runs of texels that are above half of the posts' height, along each row and each column.
     #[test]
     fn posts_are_thin_and_tall() {
         let map = BuiltInMap::Posts.height_map(256).expect("a map");

@@ -1,22 +1,22 @@
-//! Random numbers and tileable value noise.
+//! Random numbers, and value noise that repeats after a tile.
 
 use relievo::ops::hash::{LANES, threefry2x32};
 
-/// Two random numbers in 0..1 for a cell; `key` separates the uses.
+/// Two random numbers in 0..1 for a cell. Different keys give independent numbers.
 pub fn random(key: u32, cell: [usize; 2]) -> [f64; 2] {
     let [x, y] = cell.map(|index| index as u32);
     let (first, second) = threefry2x32([key, 0x7e1e_f000], [x; LANES], [y; LANES]);
     [first[0], second[0]].map(|word| f64::from(word) / 4_294_967_296.0)
 }
 
-/// The cell of a periodic lattice, and the position in it.
+/// Cell of a periodic lattice that contains `at`, and the position in that cell, 0 to 1.
 pub fn cell(at: f64, period: usize) -> (usize, f64) {
     let floor = at.floor();
     ((floor as i64).rem_euclid(period as i64) as usize, at - floor)
 }
 
-/// Value noise of several octaves, each with twice the frequency and half the weight of the one before; period
-/// 1, values in 0..1 around ½.
+/// Value noise of several octaves. Each octave has twice the frequency and half the weight of the previous octave. The period is
+/// 1; values are in 0..1, with a mean of about ½.
 #[derive(Debug, Clone)]
 pub struct Noise {
     octaves: Vec<Lattice>,
@@ -29,7 +29,7 @@ struct Lattice {
 }
 
 impl Noise {
-    /// Noise whose first octave has `period` lattice cells per tile.
+    /// Creates noise whose first octave has `period` lattice cells per tile.
     pub fn new(key: u32, period: usize, octaves: usize) -> Self {
         let lattice = |octave: usize| {
             let period = period << octave;
@@ -39,7 +39,7 @@ impl Noise {
         Self { octaves: (0..octaves).map(lattice).collect() }
     }
 
-    /// The noise at a point.
+    /// Value of the noise at (u, v), 0 to 1.
     pub fn at(&self, u: f64, v: f64) -> f64 {
         let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
         for lattice in &self.octaves {
@@ -50,7 +50,7 @@ impl Noise {
         sum / total
     }
 
-    /// The noise at a point, rescaled to −1 to 1 around 0.
+    /// Value of the noise at (u, v), rescaled to −1 to 1 around 0.
     pub fn signed(&self, u: f64, v: f64) -> f64 {
         2.0 * self.at(u, v) - 1.0
     }
@@ -61,7 +61,7 @@ impl Lattice {
         let period = self.period as f64;
         let ((x, s), (y, t)) = (cell(u * period, self.period), cell(v * period, self.period));
         let value = |x: usize, y: usize| self.values[y % self.period * self.period + x % self.period];
-        // Perlin's quintic leaves no crease where lattice cells meet.
+        // Perlin's quintic polynomial leaves no creases between lattice cells.
         let fade = |t: f64| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
         let (s, t) = (fade(s), fade(t));
         let top = value(x, y) + (value(x + 1, y) - value(x, y)) * s;

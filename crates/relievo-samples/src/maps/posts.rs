@@ -1,16 +1,17 @@
-//! Thin tall posts: a whole post fits between two steps of a linear search (B figure 3.6).
+//! Height map of thin tall posts. A whole post fits between two steps of a linear search, which therefore misses it (B figure
+//! 3.6).
 
 use super::noise::{Noise, cell, random};
 use super::{Pattern, Sample, shade};
 
-/// Posts along an edge.
+/// Number of posts along an edge of the tile.
 const POSTS: usize = 8;
 
-/// Posts per tile.
+/// Number of posts in the tile.
 #[cfg(test)]
 pub const COUNT: usize = POSTS * POSTS;
 
-/// Widths are whole texels of a tile of this size.
+/// Texels along an edge of the tile for which the posts' positions and widths are whole numbers of texels.
 const TEXELS: f64 = 256.0;
 
 const WOOD: [f64; 3] = [214.0, 178.0, 122.0];
@@ -25,16 +26,16 @@ pub struct Posts {
 
 #[derive(Clone, Copy)]
 struct Post {
-    /// Left and upper edge, in tiles from the cell's corner.
+    /// Left and upper edge of the post, in tiles, relative to the corner of the post's cell.
     start: [f64; 2],
-    /// Width in tiles.
+    /// Width of the post in tiles.
     width: f64,
     height: f64,
     color: [f64; 3],
 }
 
 impl Posts {
-    /// Posts for a tile of `size` texels: no post is thinner than one texel.
+    /// Places the posts for a tile of `size` × `size` texels, with no post thinner than one texel.
     pub fn new(size: u32) -> Self {
         let post = |index| post([index % POSTS, index / POSTS], 1.0 / f64::from(size));
         let posts = (0..POSTS * POSTS).map(post).collect();

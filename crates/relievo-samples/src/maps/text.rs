@@ -1,22 +1,22 @@
-//! A slab of limestone with a raised word, a cut line below it and a cut frame.
+//! Height map of a limestone slab with a raised word, a carved line of text below the word, and a carved frame.
 
 use super::letters::Line;
 use super::noise::Noise;
 use super::{Pattern, Sample, blend, blend_color, shade, smooth_step};
 
-/// Heights of the slab's face, the tops of the letters and the bottom of the grooves.
+/// Heights of the slab's face, of the tops of the letters, and of the bottom of the grooves, 0 to 1.
 const FACE: f64 = 0.48;
 const TOP: f64 = 0.97;
 const GROUND: f64 = 0.12;
 
-/// Width of a slanted edge, in tiles.
+/// Width of the slanted edges of letters and grooves, in tiles.
 const BEVEL: f64 = 0.008;
 
-/// How much bolder the letters are than the typeface, in tiles.
+/// Widths by which the outlines of raised and carved letters are moved outwards, in tiles. Letters are bolder than the typeface.
 const BOLDER: [f64; 2] = [0.008, 0.003];
 
-/// Distance from the tile's edge to the middle of the frame, the frame's half width, and the rule's half
-/// length, in tiles.
+/// Distances in tiles: from the tile's edge to the middle of the frame; half the frame's width; half the length of the rule, the
+/// straight groove between the lines of text.
 const FRAME: f64 = 0.045;
 const FRAME_HALF: f64 = 0.008;
 const RULE: f64 = 0.30;
@@ -44,7 +44,7 @@ impl Text {
         }
     }
 
-    /// How far a point lies inside a groove: the frame, the rule or a cut letter.
+    /// Distance in tiles by which a point lies inside a groove: the frame, the rule or a carved letter. Negative outside.
     fn groove(&self, [u, v]: [f64; 2]) -> f64 {
         let edge = [u, v].map(|along| along.min(1.0 - along));
         let frame = FRAME_HALF - (edge[0].min(edge[1]) - FRAME).abs();

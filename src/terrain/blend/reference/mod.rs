@@ -1,4 +1,4 @@
-//! The top-down colour map: the CPU reference of `kernels/terrain/blend.wgsl` and `wgsl/terrain/zones.wgsl`.
+//! Top-down colour maps: the CPU reference of `kernels/terrain/blend.wgsl` and `wgsl/terrain/zones.wgsl`.
 
 mod texturing;
 
@@ -11,28 +11,28 @@ use crate::terrain::cover::{Cover, ShaderZone};
 use crate::terrain::normals::reference::unit_normal;
 pub use texturing::{color_variation, texel_indices, tiles_of, triplanar_weights, varied};
 
-/// Tangent of half the angle between a unit normal and the vertical: 0 on level ground, 1 on a wall.
+/// Steepness of a unit normal: the tangent of half its angle to the vertical. 0 on level ground, 1 on a vertical wall.
 pub fn steepness(normal: [f32; 3]) -> f32 {
     let [x, y, z] = normal;
     (x * x + z * z).sqrt() / (1.0 + y)
 }
 
-/// Weight of a zone at a height and a steepness (B equation 3.6). By height it is 1 at `max`, and falls linearly to 0 at `max`
-/// ± (`max` − `min`). It is multiplied by the two linear transitions of the slope.
+/// Weight of a zone at a height and a steepness, 0 to 1 (B equation 3.6). The factor for height is 1 at `max` and falls linearly
+/// to 0 at `max` ± (`max` − `min`). It is multiplied by the factors of the two transitions of the zone's slope range.
 pub fn zone_weight(zone: &ShaderZone, height: f32, steep: f32) -> f32 {
     let range = zone.max - zone.min;
     let line = |line: [f32; 2]| (line[0] * steep + line[1]).clamp(0.0, 1.0);
     ((range - (height - zone.max).abs()) / range).max(0.0) * (line(zone.rise) * line(zone.fall))
 }
 
-/// Factor of a weight that depends on a texel's height, 0 to 1.
+/// Factor by which a texel's height, 0 to 1, changes the weight of its zone; 0 to 1.
 fn prominence(zone: &ShaderZone, texel_height: f32) -> f32 {
     let squared = (1.0 + zone.height_blend * (0.9375 * texel_height - 0.9375)).powi(2);
     squared * squared
 }
 
-/// Fraction of each zone's colour at a height and a steepness, in the order of `zones`. `height` is in height units, `steep` is
-/// the [`steepness`], 0 to 1. `texel_heights` are the heights of the zones' texels there, 0 to 1.
+/// Fraction of each zone's colour in the colour of the ground, in the order of `zones`. `height` is in height units, and `steep`
+/// is the [`steepness`], 0 to 1. `texel_heights` has the height in each zone's texture at the point, 0 to 1.
 pub fn zone_fractions(
     zones: &[ShaderZone],
     height: f32,
@@ -58,8 +58,8 @@ pub fn zone_fractions(
     (0..zones.len()).map(|index| if index == nearest { 1.0 } else { 0.0 }).collect()
 }
 
-/// Colour map of a window with `width` samples per row, without the outermost ring of samples: RGBA, 8 bits each, red in the
-/// lowest byte. `place` is the position of the first inner sample ([`Cover::place`]).
+/// Colour map of a window with `width` samples per row, without the outermost ring of samples. Pixels are sRGB RGBA with 8 bits
+/// each, red in the lowest byte. `place` is the texture position of the first inner sample ([`Cover::place`]).
 pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, place: [u32; 2]) -> Vec<u32> {
     let at = |x: usize, y: usize| window[y * width + x];
     let zones: Vec<ShaderZone> = cover.zones.iter().map(|map_zone| map_zone.zone).collect();
@@ -79,7 +79,7 @@ pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, pla
     pixels
 }
 
-/// Colour of the ground at a position in 2^-22 tiles: east, up, south.
+/// Linear colour of the ground at a texture position `tiles` (east, up, south), in 2^-22 tiles.
 fn ground_color(
     cover: &Cover,
     zones: &[ShaderZone],

@@ -2,14 +2,15 @@
 
 use crate::terrain::cover::{Cover, MapZone, TILES_PERIOD};
 
-/// Triplanar weights for a unit normal: of the projection from above, from the east or west, and from the north or south.
+/// Weights of the three projections in triplanar mapping, for a unit normal: from above, from east or west, from north or south.
+/// Their sum is 1.
 pub fn triplanar_weights([x, y, z]: [f32; 3]) -> [f32; 3] {
     let squared = [y, x, z].map(|part| (part.abs() - 0.3).max(0.0).powi(2));
     squared.map(|part| part / (squared[0] + squared[1] + squared[2]))
 }
 
-/// Position of a sample in 2^-22 tiles, east, up and south, modulo [`TILES_PERIOD`]. The sample is `columns` and `rows` after
-/// the one at `place`. Its vertical position is rounded down.
+/// Texture position (east, up, south) of a sample, in 2^-22 tiles, modulo [`TILES_PERIOD`] tiles. The sample is `columns` east
+/// and `rows` south of the sample at `place`. The vertical position is rounded down.
 pub fn tiles_of(cover: &Cover, place: [u32; 2], [columns, rows]: [usize; 2], height: i32) -> [u32; 3] {
     let [step, per_unit] = cover.steps();
     let [east, south] = [(place[0], columns), (place[1], rows)]
@@ -17,7 +18,7 @@ pub fn tiles_of(cover: &Cover, place: [u32; 2], [columns, rows]: [usize; 2], hei
     [east, ((i64::from(height) * i64::from(per_unit)) >> 16) as u32, south]
 }
 
-/// Texel indices of a zone's texture at a position, one for each plane.
+/// Indices of the texels of a zone's texture at a texture position, one index per projection plane.
 pub fn texel_indices(cover: &Cover, zone: &MapZone, [east, up, south]: [u32; 3]) -> Vec<usize> {
     let index = |at: [u32; 2]| {
         let edge = 1 << zone.edge_log2;
@@ -32,7 +33,7 @@ pub fn texel_indices(cover: &Cover, zone: &MapZone, [east, up, south]: [u32; 3])
     planes[..if cover.triplanar { 3 } else { 1 }].iter().copied().map(index).collect()
 }
 
-/// Linear colour of a zone's texture at a position, and its height.
+/// Linear colour (red, green, blue) and height of a zone's texture at a texture position.
 pub(super) fn texel(cover: &Cover, zone: &MapZone, normal: [f32; 3], tiles: [u32; 3]) -> [f32; 4] {
     let texel = |index: usize| cover.texels[index].map(|channel| f32::from(channel) / 65_535.0);
     let planes: Vec<[f32; 4]> = texel_indices(cover, zone, tiles).into_iter().map(texel).collect();
@@ -45,7 +46,7 @@ pub(super) fn texel(cover: &Cover, zone: &MapZone, normal: [f32; 3], tiles: [u32
     above
 }
 
-/// Random word of a cell.
+/// Random word for a cell of the colour variation's noise.
 fn word(x: u32, y: u32) -> u32 {
     let mut word = x.wrapping_mul(0x9e37_79b1).wrapping_add(y.wrapping_mul(0x85eb_ca77));
     word = (word ^ (word >> 16)).wrapping_mul(0x7feb_352d);
@@ -53,7 +54,7 @@ fn word(x: u32, y: u32) -> u32 {
     word ^ (word >> 16)
 }
 
-/// Noise at texture coordinates, in top-down projection: brightness and warmth, each −1 to 1.
+/// Noise of the colour variation at top-down texture coordinates, in tiles: brightness and warmth, each −1 to 1.
 pub fn color_variation(tiles: [f32; 2]) -> [f32; 2] {
     let mut sum = [0.0_f32; 2];
     for octave in 0..3 {
@@ -77,7 +78,7 @@ pub fn color_variation(tiles: [f32; 2]) -> [f32; 2] {
     sum.map(|sum| sum * (2.0 / 196_605.0) - 1.0)
 }
 
-/// Applies a variation of `strength`, 0 to 1, to a linear colour.
+/// Applies the colour variation to a linear colour. `brightness` and `warmth` are −1 to 1, `strength` is 0 to 1.
 pub fn varied(color: [f32; 3], [brightness, warmth]: [f32; 2], strength: f32) -> [f32; 3] {
     let tint = [0.2, 0.05, -0.25];
     std::array::from_fn(|channel| {

@@ -1,22 +1,22 @@
-//! Grass texture: blades that grow from random places, the highest in front, seen from above.
+//! Grass texture, seen from above: blades grow from random places, and the highest blade is visible.
 
 use crate::terrain::texture::TEXTURE_SIZE;
 use crate::terrain::texture::field::{made, mixed, texels as shaded};
 use crate::terrain::texture::noise::{octaves, random, smoothstep};
 
-/// Texels along an edge.
+/// Number of texels along an edge of the texture.
 const EDGE: usize = TEXTURE_SIZE as usize;
-/// Number of blades.
+/// Number of grass blades in the texture.
 const BLADES: u32 = 30_000;
 
-/// Visible surface at a texel.
+/// Height and colour of the surface that is visible at a texel.
 #[derive(Clone, Copy)]
 struct Seen {
     height: f32,
     color: [f32; 3],
 }
 
-/// Texels of the texture.
+/// Generates the texels of the grass texture.
 pub fn grass() -> Vec<u8> {
     let soil = made(|at| {
         let rough = octaves(201, [24, 24], 4, 0.6, at);
@@ -33,14 +33,14 @@ pub fn grass() -> Vec<u8> {
     shaded(&heights, seen.iter().map(|seen| seen.color).collect(), 0.75)
 }
 
-/// Draws a blade, which bends over to one side.
+/// Draws one blade of grass, which bends to one side.
 fn grow(seen: &mut [Seen], blade: u32) {
     let number = |use_of: u32| random(211 + use_of, [blade, 0]);
     let root = [number(0), number(1)];
     let tuft = octaves(223, [11, 11], 3, 0.5, root);
     let length = (9.0 + 17.0 * number(2)) * (1.0 + 0.5 * tuft);
     let tall = (0.35 + 0.45 * number(3)) * (1.0 + 0.35 * tuft);
-    // A random direction without a sine: a point of a square.
+    // Random direction, computed without sines: a random point in a square.
     let way = [2.0 * number(4) - 1.0, 2.0 * number(5) - 1.0];
     let scale = length / (way[0] * way[0] + way[1] * way[1]).sqrt().max(0.2);
     let bend = (number(6) - 0.5) * 0.7;

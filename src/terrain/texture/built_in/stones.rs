@@ -1,18 +1,19 @@
-//! Stone textures: loose stones on soil, and a slope of broken stones.
+//! Stone textures: soil with loose stones, and a slope of broken stones (scree).
 
 use super::apart;
 use crate::terrain::texture::field::{made, mixed, ramp, stretched, texels as shaded};
 use crate::terrain::texture::noise::{cell, gradient, octaves, random, smoothstep};
 
-/// A stone at a point, or no stone.
+/// The stone at a point of the texture, if there is one.
 struct Stone {
-    /// Height above the ground below, 0 where there is no stone.
+    /// Height above the surrounding ground; 0 where there is no stone.
     height: f32,
     /// Brightness and hue, 0 to 1.
     look: [f32; 2],
 }
 
-/// Stones of one size, `count` places in a row. The fraction `dense` of the places has a stone.
+/// Stones of one size at texture coordinates `at`. The texture has `count` places for stones along each edge. The fraction
+/// `dense` of these places has a stone.
 fn stone(key: u32, count: u32, dense: f32, at: [f32; 2]) -> Stone {
     let bend = 0.16 / count as f32;
     let bent = [
@@ -22,7 +23,7 @@ fn stone(key: u32, count: u32, dense: f32, at: [f32; 2]) -> Stone {
     let cell = cell(key, [count; 2], bent);
     let number = |use_of: u32| random(key + 3, [cell.word, use_of]);
     let gap = cell.distances[1] - cell.distances[0];
-    // The top is a tilted plane, cut by two others.
+    // The top of a stone is a tilted plane, cut off by two other planes.
     let face =
         |first: u32| cell.offset[0] * (number(first) - 0.5) + cell.offset[1] * (number(first + 1) - 0.5);
     let top = (0.55 + 0.45 * number(0) + 0.7 * face(1)).min(0.8 + 1.6 * face(3)).min(0.85 + 1.6 * face(5));
@@ -30,13 +31,13 @@ fn stone(key: u32, count: u32, dense: f32, at: [f32; 2]) -> Stone {
     Stone { height, look: [number(8), number(9)] }
 }
 
-/// The colour of a stone.
+/// Colour of a stone. `look` is its brightness and hue, 0 to 1; `tone` is added to the brightness.
 fn rock(look: [f32; 2], tone: f32) -> [f32; 3] {
     let grey = ramp(&[[0.36, 0.34, 0.32], [0.52, 0.50, 0.47], [0.66, 0.64, 0.60]], look[0] + tone);
     mixed(grey, [grey[0] * 1.12, grey[1] * 0.98, grey[2] * 0.82], look[1])
 }
 
-/// A slope of broken stones, large ones over small ones.
+/// Generates the texels of a slope of broken stones, large ones over small ones.
 pub fn scree() -> Vec<u8> {
     let (heights, colors) = apart(made(|at| {
         let grain = octaves(301, [60, 60], 3, 0.6, at);
@@ -54,7 +55,7 @@ pub fn scree() -> Vec<u8> {
     shaded(&stretched(heights), colors, 1.0)
 }
 
-/// Crumbs of earth with few stones.
+/// Generates the texels of soil: crumbs of earth with a few stones.
 pub fn soil() -> Vec<u8> {
     let (heights, colors) = apart(made(|at| {
         let crumbs = octaves(401, [14, 14], 6, 0.68, at);
