@@ -179,7 +179,7 @@ pub struct Scene {
     objects: Slots<Object>,
     budget: ErrorBudget,
     light: Light,
-    /// Scene time in seconds (`now`), and the seconds of the last [`Scene::advance`] (`step`).
+    /// Scene time in seconds (`now`), and the seconds of the last [`Scene::advance`] since the last frame (`step`).
     now: f64,
     step: f32,
     /// Motion history: whether the placements and vertices of the last frame are kept.
