@@ -23,9 +23,10 @@ impl Scene {
     /// recorded again.
     ///
     /// Some changes may need a pipeline that a renderer has not compiled: the first material with [`Alpha::Mask`] or
-    /// [`Alpha::Dithered`] among opaque ones, the first with a normal map, and the first or last texture of a material
-    /// that is drawn alone. After such a change, call [`Renderer::prepare`](crate::render::Renderer::prepare). Without
-    /// this call, [`Renderer::draw`](crate::render::Renderer::draw) reports that the object is not compiled.
+    /// [`Alpha::Dithered`] among opaque ones, and the first with a normal map. The same holds for adding the first
+    /// texture to a material that is drawn alone, or removing the last one. After such a change, call
+    /// [`Renderer::prepare`](crate::render::Renderer::prepare). Without this call,
+    /// [`Renderer::draw`](crate::render::Renderer::draw) reports that the object is not compiled.
     ///
     /// A material cannot change between blended and not blended, because blended surfaces are drawn in a layer of their
     /// own.

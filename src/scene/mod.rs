@@ -179,7 +179,8 @@ pub struct Scene {
     objects: Slots<Object>,
     budget: ErrorBudget,
     light: Light,
-    /// Scene time in seconds (`now`), and the seconds of the last [`Scene::advance`] since the last frame (`step`).
+    /// `now` is the scene's time in seconds. `step` is the argument of the last [`Scene::advance`], and 0 after each
+    /// frame.
     now: f64,
     step: f32,
     /// Motion history: whether the placements and vertices of the last frame are kept.
@@ -356,8 +357,8 @@ impl Scene {
         self.is_shadowed
     }
 
-    /// Sets how the allowed displacement of characters is divided among levels of detail, bones and influences. It
-    /// holds from the next recording on.
+    /// Sets how the allowed displacement of characters is divided among levels of detail, bones and influences. The new
+    /// division holds from the next recording on.
     ///
     /// # Errors
     /// [`InputError`] if [`ErrorBudget::validate`] refuses the budget.

@@ -24,7 +24,7 @@ use crate::{Error, InputError};
 
 /// A kind of object. The default methods suit static objects whose instances the caller spawns.
 pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
-    /// The kind's name in error messages, with an article.
+    /// The kind's name in error messages, such as `a mesh`.
     fn name(&self) -> &'static str;
 
     /// Whether the caller spawns the instances. If not, the kind creates them itself.
@@ -62,7 +62,7 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
 
     // Device resources.
 
-    /// Allocates memory for `capacity` instances and resets the state of all instances. Changes nothing on an error.
+    /// Allocates memory for `capacity` instances and resets the state of all instances. If this fails, nothing changes.
     fn renew(
         &mut self,
         gpu: &Gpu,
@@ -160,7 +160,8 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(hits.fold(None, SurfaceHit::nearer))
     }
 
-    /// The lowest and highest corner of the smallest box around an instance, in the target space of [`Placed::place`].
+    /// The lowest and highest corner of the smallest box around an instance, in the space that [`Placed::place`] maps
+    /// to.
     fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {
         let surfaces = self.surfaces(instance.index, instance.now)?;
         let boxes = surfaces.iter().map(|surface| surface.bounds(instance.place));

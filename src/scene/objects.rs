@@ -55,10 +55,10 @@ impl Scene {
     /// Adds a static mesh: all meshes of a model in the rest pose, with their materials and levels of detail. A model
     /// without levels ([`add_levels`](crate::skinning::add_levels)) is always drawn in full detail.
     ///
-    /// The object has memory for at least `capacity` instances, 1 to 2²⁰, and grows when [`Scene::spawn`] exceeds it.
-    /// One unit of the model is [`Placement::scale`](crate::scene::Placement::scale) world units long.
-    /// [`BoundingSphere::in_clips`](crate::skinning::bounding_sphere::BoundingSphere::in_clips) returns the approximate
-    /// size of a model.
+    /// The object has memory for at least `capacity` instances, 1 to 2²⁰, and grows when more are spawned
+    /// ([`Scene::spawn`]). One unit of the model is [`Placement::scale`](crate::scene::Placement::scale) world units
+    /// long. [`BoundingSphere::in_clips`](crate::skinning::bounding_sphere::BoundingSphere::in_clips) returns the
+    /// approximate size of a model.
     ///
     /// # Errors
     /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with
@@ -96,7 +96,7 @@ impl Scene {
 
     /// Adds a character: an animated model. Bones are sampled from clips, and meshes are morphed and skinned, only as
     /// precisely as the views need. A model without clips becomes a mesh ([`Scene::add_mesh`]). The object has memory
-    /// for at least `capacity` instances, 1 to 2²⁰, and grows when [`Scene::spawn`] exceeds it.
+    /// for at least `capacity` instances, 1 to 2²⁰, and grows when more are spawned ([`Scene::spawn`]).
     ///
     /// Call [`add_levels`](crate::skinning::add_levels) on the model first. Without this call, the full mesh is the
     /// only level of detail.
@@ -179,7 +179,7 @@ impl Scene {
     }
 
     /// Adds a mesh with relief mapping. The object has memory for at least `capacity` instances, 1 to 2²⁰, and grows
-    /// when [`Scene::spawn`] exceeds it.
+    /// when more are spawned ([`Scene::spawn`]).
     ///
     /// # Errors
     /// [`InputError`] for a capacity out of range, for maps, options or a mesh that do not fit each other, for a mesh with
@@ -214,7 +214,7 @@ impl Scene {
     }
 
     /// Adds an object of a caller-defined kind. The object has memory for at least `capacity` instances, 1 to 2²⁰, and
-    /// grows when [`Scene::spawn`] exceeds it. Its levels of detail change at once ([`Transition::Hard`]).
+    /// grows when more are spawned ([`Scene::spawn`]). Its levels of detail change at once ([`Transition::Hard`]).
     ///
     /// # Errors
     /// [`InputError`] for a capacity out of range, and for invalid levels, parts, indices or an invalid sphere of the
@@ -222,7 +222,7 @@ impl Scene {
     ///
     /// # Examples
     ///
-    /// Two instances of grass. Its type is a [`Kind`] of the caller, as in `examples/kind`.
+    /// Two instances of grass. The grass is a [`Kind`] of the caller, as in `examples/kind`.
     ///
     /// ```no_run
     /// # use relievo::scene::kind::Kind;
@@ -271,7 +271,7 @@ impl Scene {
         id
     }
 
-    /// Updates in all objects whether any object of the scene has a rank.
+    /// Notes in every object whether any object of the scene has a rank.
     fn update_ranks(&mut self) {
         let is_ranked = self.objects.iter().any(|object| object.level_of_detail.rank.is_some());
         for object in self.objects.iter_mut() {
@@ -330,9 +330,9 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, and for settings that [`LevelOfDetail::validate`]
-    /// refuses. [`Transition::Geomorph`] needs levels of detail, and partners in the meshes
-    /// ([`add_levels`](crate::skinning::add_levels) finds them). So it is always refused for terrain, for reliefs, and
-    /// for meshes that exceed a binding of the device.
+    /// refuses. [`Transition::Geomorph`] needs levels of detail, and for each vertex a partner to move towards
+    /// ([`add_levels`](crate::skinning::add_levels) finds partners). So geomorphs are always refused for terrain, for
+    /// reliefs, and for meshes that exceed a binding of the device.
     ///
     /// # Examples
     ///
@@ -377,8 +377,8 @@ impl Scene {
         Ok(&self.object_at(object)?.level_of_detail)
     }
 
-    /// Whether an object's levels can geomorph. They can if the object has levels of detail and its vertices have
-    /// partners.
+    /// Whether an object's levels can geomorph. This needs levels of detail, and for each vertex a partner to move
+    /// towards.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.

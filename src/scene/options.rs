@@ -67,7 +67,8 @@ impl RootOptions<'_> {
     }
 }
 
-/// Appearance of terrain in the layer [`Layer::Color`](crate::render::Layer::Color). It has no effect on other layers.
+/// Appearance of terrain in the layer [`Layer::Color`](crate::render::Layer::Color). The style has no effect on other
+/// layers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum TerrainStyle {
     /// The textures of the terrain's zones, blended by height.

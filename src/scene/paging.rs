@@ -64,8 +64,8 @@ impl Paging {
         self.full.min((SMALL / self.bytes) as u32).min(self.most).max(1)
     }
 
-    /// The number of pages to allocate for a frame that needs `needed` pages. It includes a reserve, so that the next
-    /// frames need no new allocation.
+    /// The number of pages to allocate for a frame that needs `needed` pages. The result includes a reserve, so that
+    /// the next frames need no new allocation.
     pub fn enough(&self, needed: u32) -> u32 {
         needed.saturating_add(needed / 2).min(self.full).min(self.most).max(1)
     }

@@ -17,9 +17,9 @@ pub struct Quality {
     /// The largest number of triangles that the view draws in one layer, at least 1. Back faces and both levels of
     /// fades count. `None`, the default, means no limit.
     ///
-    /// In each frame, the device finds the smallest factor of all instances' metrics at which the triangles fit the
-    /// limit. A larger metric selects the coarser levels of instances further away, or of a larger [`Quality::pixels`].
-    /// The error is then at most `pixels` times this factor
+    /// In each frame, the device finds the smallest factor at which the triangles fit the limit. The factor multiplies
+    /// the metric by which each instance's level of detail is chosen. So instances get the levels that they would have
+    /// further away, or with a larger [`Quality::pixels`]. The error is then at most `pixels` times this factor
     /// ([`ViewStatistics::pixels`](super::ViewStatistics::pixels)). The factor rises at once, and falls within half a
     /// second.
     ///

@@ -127,7 +127,7 @@ mod drawn {
     pub struct DrawnInstance {
         /// The instance.
         pub instance: InstanceId,
-        /// How it was drawn; `None` if it was not drawn.
+        /// How the view drew the instance; `None` if the view did not draw it.
         pub drawn: Option<DrawnAs>,
     }
 

@@ -19,7 +19,7 @@ pub struct Ray {
     /// The start of the ray in world units, relative to the cell's corner. For cell (0, 0, 0), these are world
     /// coordinates.
     pub offset: DVec3,
-    /// The direction, of any length but 0.
+    /// The direction of the ray, of any length except 0.
     pub direction: DVec3,
     /// The largest distance of a hit, in world units.
     pub limit: f64,
@@ -221,7 +221,7 @@ mod tests {
         assert!((middle.world() - eye.as_dvec3()).length() < 0.501);
         let corner = Ray::through(&camera, [0.0, 0.0]).expect("a pixel");
         let up = ahead.cross(DVec3::Y).normalize().cross(ahead);
-        // Half the field of view upwards, and twice as far sideways.
+        // The corner is half the field of view above the middle, and twice as far to the side.
         let rise = corner.direction.normalize().dot(up) / corner.direction.normalize().dot(ahead);
         assert!((rise - 0.45_f64.tan()).abs() < 1e-5, "{rise}");
         assert_eq!(Ray::through(&camera, [f32::NAN, 0.0]).expect_err("refused").path, "pixel[0]");

@@ -29,8 +29,8 @@ impl Scene {
     ///
     /// # Errors
     /// If [`Scene::rebuild`] fails, its error; nothing has changed then. Otherwise, the first error of a part, with a
-    /// path that starts with `parts[0]`, `parts[1]` and so on. The scene and the parts before it are then rebuilt; the
-    /// failed part and the parts after it are not.
+    /// path that starts with `parts[0]`, `parts[1]` and so on. The scene and the parts before the failed part are then
+    /// rebuilt; all other parts are not.
     ///
     /// # Examples
     ///
@@ -94,7 +94,7 @@ impl Scene {
     ///
     /// The scene keeps its sources on the host: meshes with their images, clips, and recipes of terrain. Terrain is
     /// generated again. The rebuild takes as long as adding the objects, except for computations that characters need
-    /// only once (bounds of motion). It compiles all shaders that the new device has not compiled yet.
+    /// only once (bounds of motion). All shaders that the new device has not compiled yet are compiled.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for terrain and reliefs whose data is in the caller's buffers or textures;

@@ -27,9 +27,9 @@ use crate::{Error, InputError};
 
 /// A relief-mapped mesh, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
 ///
-/// A relief has no levels of detail, so its mesh is drawn in full at any distance. The reason: the error of a level
-/// bounds only the displacement of the surface. It does not bound texture coordinates, along which rays march through
-/// the relief. Use a mesh with few triangles, because the maps contain the detail.
+/// A relief has no levels of detail, so its mesh is drawn in full at any distance. The error of a level would bound
+/// only the displacement of the surface, but not the texture coordinates along which rays march through the relief. Use
+/// a mesh with few triangles, because the maps contain the detail.
 #[derive(Debug, Clone)]
 pub struct Relief {
     /// The mesh, in model space.

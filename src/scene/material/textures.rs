@@ -9,8 +9,8 @@ use crate::gpu::{Gpu, GpuError};
 use crate::surface::mips::Mips;
 use crate::{Error, InputError, srgb};
 
-/// Largest number of texels in the finest mip level of a texture array, all layers together (256 MiB). Images of larger
-/// arrays are halved.
+/// Largest number of texels in the finest mip level of a texture array, all layers together (256 MiB). In a larger
+/// array, all images are halved in width and height.
 const MAX_TEXELS: u64 = 1 << 26;
 
 /// The meaning of an image's channels.
@@ -22,8 +22,8 @@ pub(super) enum Texels {
     Normal,
 }
 
-/// Uploads a texture array. Layer by layer, `images` are indices in `all`. With `has_mips`, the array has all mip
-/// levels. Without images, the array is one texel: white, or a flat normal.
+/// Uploads a texture array. For each layer, `images` has the index of the layer's image in `all`. With `has_mips`, the
+/// array has all mip levels. If `images` is empty, the array is one texel: white, or a flat normal.
 ///
 /// # Errors
 /// [`InputError`] for an image that [`check_image`] refuses; [`GpuError`], also if there are more images than a texture
@@ -109,7 +109,8 @@ fn common_size(images: &[&RgbaImage]) -> [u32; 2] {
     size
 }
 
-/// The image resized to a width and height. Colours are filtered in linear light. An image of that size is not copied.
+/// The image resized to a width and height. Colours are filtered in linear light. An image that already has this size
+/// is returned without a copy.
 fn resized(image: &RgbaImage, [width, height]: [u32; 2], texels: Texels) -> Cow<'_, RgbaImage> {
     if image.dimensions() == (width, height) {
         return Cow::Borrowed(image);

@@ -9,7 +9,7 @@ use crate::shared::lod::instance::INSTANCE_CARRIES;
 use crate::{Error, InputError};
 
 impl Object {
-    /// Doubles the capacity for instances. Changes nothing on an error.
+    /// Doubles the capacity for instances. If this fails, nothing changes.
     pub(in crate::scene) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         let capacity = self.instances.capacity();
         if capacity >= MAX_CAPACITY {

@@ -45,7 +45,7 @@ pub(crate) struct Object {
     pub(super) mesh_fraction: f32,
     /// How the object's levels of detail are chosen and change.
     pub(super) level_of_detail: LevelOfDetail,
-    /// Whether any object of the scene has a rank.
+    /// Whether any object of the scene has a rank for budgets ([`LevelOfDetail::rank`]).
     pub(super) is_ranked: bool,
     /// Budgets count the object's triangles in units of 2^`triangle_unit`.
     triangle_unit: u32,

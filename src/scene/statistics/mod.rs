@@ -77,7 +77,8 @@ pub struct ViewStatistics {
 /// The effect of a budget of triangles in one frame ([`Quality::triangles`](crate::scene::Quality::triangles)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BudgetStatistics {
-    /// The largest factor of the metric among all ranks, at least 1. A larger factor means coarser levels of detail.
+    /// The largest factor that the budget applied to objects of any rank, at least 1. The factor multiplies the metric
+    /// by which levels of detail are chosen.
     pub factor: f32,
     /// Whether even the coarsest levels of detail had too many triangles.
     pub is_missed: bool,
@@ -158,7 +159,7 @@ impl Scene {
     /// The stage times of the last frame whose times have arrived. `None` if statistics are off
     /// ([`Scene::set_statistics`]), before the first times arrive, and on a device without `TIMESTAMP_QUERY`.
     ///
-    /// The device's clock measures the times. A software adapter executes a pass only when its results are needed. Its
+    /// The device's clock measures the times. A software adapter executes a pass only when its results are needed. The
     /// times then leave out the driver's work before and after the pass, mainly compilation and waiting for threads.
     pub fn stage_times(&mut self) -> Option<&StageTimes> {
         self.timer.as_mut()?.last()

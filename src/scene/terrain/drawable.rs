@@ -97,7 +97,7 @@ mod tests {
     fn a_patch_has_the_diagonals_of_its_strips() {
         assert_eq!(patch_indices(2), [0, 2, 1, 1, 2, 3]);
         let size = 5;
-        // One strip per row of cells.
+        // The expected triangles: one strip per row of cells.
         let strip = |row: u32| {
             let corner = move |index: u32| (row + (index & 1)) * size + (index >> 1);
             (0..2 * size - 2).map(move |at| [0, 1, 2].map(|next| corner(at + next)))

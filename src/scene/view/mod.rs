@@ -177,8 +177,8 @@ impl View {
     ///
     /// # Errors
     /// [`InputError`] if [`Camera::validate`] refuses the camera, and for a projection that is neither perspective nor
-    /// parallel. [`InputError`] also if the near plane is not ahead of the eye; `depth` decides which plane is the near
-    /// one. The camera then stays unchanged.
+    /// parallel. [`InputError`] also if the near plane is not ahead of the eye; [`Camera::depth`] decides which plane
+    /// is the near one. The camera then stays unchanged.
     ///
     /// # Examples
     ///
