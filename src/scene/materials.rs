@@ -13,30 +13,33 @@ use crate::scene::object::Object;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Replaces a material of a mesh or a character, given by its name or its index in the model. All instances show it
-    /// from the next frame on. Images are given by their index in the model; [`Scene::set_image`] replaces them and adds
-    /// others.
+    /// Replaces a material of a mesh or a character. `material` is the material's name, or its index in the model in
+    /// digits. All instances show the new material from the next frame on. A material refers to images by their index
+    /// in the model; [`Scene::set_image`] replaces images and adds others.
     ///
-    /// Cheap changes are colours, cutoffs, normal scales, and textures that are already uploaded with the materials drawn
-    /// together with this one. They only write into buffers. Any other texture or sampling is uploaded at once, with the
-    /// textures of these materials. That allocates memory, and render bundles must be made anew.
+    /// A change of colour, cutoff or normal scale only writes into buffers. So does a change to a texture that is
+    /// already uploaded for this material or for a material drawn together with it. Any other texture or sampling is
+    /// uploaded at once, with all textures of these materials. This allocates memory, and render bundles must be
+    /// recorded again.
     ///
-    /// Some changes may need a pipeline that a renderer does not have: the first material with [`Alpha::Mask`] or
-    /// [`Alpha::Dithered`] among opaque ones, the first with a normal map, and the first or last texture of a material that
-    /// is drawn alone. Then call [`Renderer::prepare`](crate::render::Renderer::prepare), which compiles the missing ones.
-    /// Without it, [`Renderer::draw`](crate::render::Renderer::draw) reports that the object is not compiled.
+    /// Some changes may need a pipeline that a renderer has not compiled: the first material with [`Alpha::Mask`] or
+    /// [`Alpha::Dithered`] among opaque ones, and the first with a normal map. The same holds for adding the first
+    /// texture to a material that is drawn alone, or removing the last one. After such a change, call
+    /// [`Renderer::prepare`](crate::render::Renderer::prepare). Without this call,
+    /// [`Renderer::draw`](crate::render::Renderer::draw) reports that the object is not compiled.
     ///
     /// A material cannot change between blended and not blended, because blended surfaces are drawn in a layer of their
     /// own.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for a material or an image that the
-    /// model does not have, for values out of range, for a change from or to blending, and for a sampling that differs from
-    /// the other materials drawn together with this one; [`crate::gpu::GpuError`]. The material then stays unchanged.
+    /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, and for a material or an image
+    /// that the model does not have. [`InputError`] also for values out of range, for a change from or to blending, and
+    /// for a sampling that the other materials drawn together with this one do not have. [`crate::gpu::GpuError`].
+    /// After an error, the material is unchanged.
     ///
     /// # Examples
     ///
-    /// A coat of another colour; everything else stays.
+    /// Changes the colour of a coat and keeps its other properties.
     ///
     /// ```no_run
     /// # use relievo::asset::Material;
@@ -74,15 +77,17 @@ impl Scene {
         set
     }
 
-    /// Replaces an image of a mesh or a character in all materials that use it, or adds one. `index` is the image's index
-    /// in the model; an index equal to the number of images adds one. Colours are sRGB with linear alpha, normal maps linear. The image
-    /// is uploaded at once, with the other images in its texture array. That allocates memory, and render bundles must be
-    /// made anew.
+    /// Replaces an image of a mesh or a character in all materials that show it, or adds an image. `index` is the
+    /// image's index in the model; an index equal to the number of images adds one. Colours are sRGB with linear alpha,
+    /// normal maps are linear.
+    ///
+    /// An image that a material shows is uploaded at once, with the other images of its texture array. This allocates
+    /// memory, and render bundles must be recorded again.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for an image without texels or
-    /// larger than the device's textures, and for an index above the number of images; [`crate::gpu::GpuError`]. The images
-    /// then stay unchanged.
+    /// larger than the device's textures, and for an index above the number of images. [`crate::gpu::GpuError`]. After
+    /// an error, the images are unchanged.
     ///
     /// # Examples
     ///
@@ -111,7 +116,7 @@ impl Scene {
         set
     }
 
-    /// A material of a mesh or a character, given by its name or its index in the model.
+    /// A material of a mesh or a character. `material` is the material's name, or its index in the model in digits.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, and for a material that the model
@@ -125,9 +130,9 @@ impl Scene {
 
 /// A change to an object's materials.
 enum Change<'a> {
-    /// A material's index, and its previous value.
+    /// A replaced material: its index, and its previous value.
     Material(usize, &'a Material),
-    /// An image's index.
+    /// The index of a replaced or added image.
     Image(usize),
 }
 
@@ -153,7 +158,7 @@ impl Change<'_> {
 }
 
 impl Object {
-    /// Changes the materials of all parts, or of none if one fails.
+    /// Changes the materials of all parts. If one part fails, no part changes.
     fn change_materials(
         &mut self,
         gpu: (&Gpu, &SceneLayouts),

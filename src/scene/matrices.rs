@@ -5,10 +5,10 @@ use glam::{DAffine3, DMat3, DVec3};
 use crate::asset::Affine;
 use crate::shared::lod::instance::SceneInstance;
 
-/// The model matrices of a character.
+/// The model matrices of a character's instances on the device.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CharacterMatrices<'a> {
-    /// The matrices, with index instance · bones + bone.
+    /// Buffer of the matrices. The matrix of a bone has index instance · bones + bone.
     pub raw: &'a wgpu::Buffer,
     /// Number of bones.
     pub bones: usize,
@@ -23,7 +23,7 @@ pub(super) fn placed_model(instance: &SceneInstance, cell: [i32; 3]) -> DAffine3
     DAffine3 { matrix3: DMat3::from_cols(x, y, z), translation: corner + offset }
 }
 
-/// The transform of three matrix rows.
+/// The transform whose matrix has these three rows.
 pub(super) fn affine_of(rows: &Affine) -> DAffine3 {
     let column = |at: usize| DVec3::from(rows.map(|row| f64::from(row[at])));
     DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) }

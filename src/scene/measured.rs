@@ -1,13 +1,14 @@
-//! Reading back what was drawn of a scene, for measurements.
+//! Reads back bones and instances of drawn frames, for measurements.
 
 use super::{InstanceId, ObjectId, Scene, View};
 use crate::Error;
 use crate::asset::Affine;
 
 impl Scene {
-    /// The model matrices with which the last frame skinned a character's instances, in the order of [`Scene::instances`].
-    /// The frame must have been submitted. Bones that were not sampled have older matrices. An instance that no view has
-    /// seen yet has zeros. Empty for an object that is not a character. Waits for the device.
+    /// The model matrices with which the last frame skinned the instances of a character, in the order of
+    /// [`Scene::instances`]. Submit the frame before this call, which waits for the device. A bone that the frame did
+    /// not sample has an older matrix. An instance that no view has seen yet has zeros. The result is empty for an
+    /// object that is not a character.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for an object that is not of this scene; [`crate::gpu::GpuError`].
@@ -21,8 +22,8 @@ impl Scene {
         Ok(entry.instances.each().map(own).collect())
     }
 
-    /// The instances of an object that the last frame of a view drew, in the order of [`Scene::instances`]. The frame must
-    /// have been submitted. Waits for the device.
+    /// The instances of an object that a view drew in its last frame, in the order of [`Scene::instances`]. Submit the
+    /// frame before this call, which waits for the device.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for an object that is not of this scene, and for a view that the last frame did

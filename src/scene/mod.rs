@@ -1,14 +1,14 @@
 //! A scene: terrain, meshes, reliefs and characters on the device, seen through any number of views.
 //!
-//! A [`Scene`] holds every object and instance; it knows no camera and no target. A [`View`] is a camera into a scene, with
-//! the visible instances and their levels of detail. A [`Renderer`](crate::render::Renderer) draws a scene through a view
-//! in the caller's render pass.
+//! A [`Scene`] holds all objects and instances, but no camera and no target. A [`View`] is a camera into a scene, with
+//! the visible instances and their levels of detail. A [`Renderer`](crate::render::Renderer) draws a scene through a
+//! view in the caller's render pass.
 //!
 #![doc = include_str!("overview.md")]
 //!
-//! A browser forbids waiting and reports errors late. There, use the functions whose names end in `_async`, and call
-//! [`Scene::health`] once a frame. The other functions do the same work, but their errors surface in a later call.
-//! `Scene::add_terrain` and `Scene::read_ground` wait, so a browser has only their `_async` forms.
+//! A browser forbids waiting and reports errors late. In a browser, use the functions whose names end in `_async`, and
+//! call [`Scene::health`] once a frame. Functions without that ending do the same work, but their errors surface in a
+//! later call. `Scene::add_terrain` and `Scene::read_ground` wait, so a browser has only their `_async` forms.
 
 mod attach;
 mod bounds;
@@ -137,14 +137,15 @@ use object::Object;
 use statistics::{SceneCounts, StageTimer};
 use watch::Watch;
 
-/// Largest number of recorded frames that may await submission or execution.
+/// Largest number of recorded frames that may wait for their submission or for the end of their execution on the
+/// device.
 pub const FRAMES_IN_FLIGHT: usize = 4;
 
 /// A scene on the device: objects (terrain, meshes, reliefs, characters) and their instances.
 ///
 /// # Examples
 ///
-/// A crowd of 100 foxes, 20 of which walk backwards, and one of which leaves.
+/// A crowd of 100 foxes. 20 foxes walk backwards, and one leaves.
 ///
 /// ```no_run
 /// use relievo::asset::Model;
@@ -173,21 +174,22 @@ pub const FRAMES_IN_FLIGHT: usize = 4;
 #[derive(Debug)]
 pub struct Scene {
     gpu: Gpu,
-    /// Number of devices the scene has had.
+    /// Number of times the scene was rebuilt on another device.
     device: u32,
     objects: Slots<Object>,
     budget: ErrorBudget,
     light: Light,
-    /// Seconds since the scene began, and seconds since the last frame.
+    /// `now` is the scene's time in seconds. `step` is the argument of the last [`Scene::advance`], and 0 after each
+    /// frame.
     now: f64,
     step: f32,
-    /// Whether the placements and vertices of the last frame are kept.
+    /// Motion history: whether the placements and vertices of the last frame are kept.
     keeps_last: bool,
-    /// Whether shading looks surfaces up in a sun's shadow map.
+    /// Whether shading samples a sun's shadow map.
     is_shadowed: bool,
-    /// Number of recorded frames.
+    /// Number of frames recorded so far.
     frames: u64,
-    /// Whether the last frame was recorded only in part.
+    /// Whether the recording of the last frame failed halfway.
     is_broken: bool,
     layout: Option<Layout>,
     layouts: u64,
@@ -196,7 +198,7 @@ pub struct Scene {
     /// Staging buffers for the caller's writes to driven bones.
     pose_staging: StagingRing,
     uploaded: usize,
-    /// Largest number of bytes of added data that a frame uploads; `None` for no limit.
+    /// Largest number of bytes of newly added objects that a frame uploads; `None` for no limit.
     upload_budget: Option<usize>,
     passes: Passes,
     layouts_of_groups: SceneLayouts,
@@ -269,7 +271,7 @@ impl Scene {
         })
     }
 
-    /// Like [`Scene::new`], but completes once the device has reported its errors ([`Gpu::check_async`]).
+    /// Like [`Scene::new`], but the future completes once the device has reported its errors ([`Gpu::check_async`]).
     ///
     /// # Errors
     /// As for [`Scene::new`].
@@ -279,8 +281,8 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Checks for errors that the device reported after the call that caused them ([`Gpu::check`]). Call it once a frame in a
-    /// browser.
+    /// Checks for device errors that were reported after the call that caused them ([`Gpu::check`]). In a browser, call
+    /// this once a frame.
     ///
     /// # Errors
     /// Those of [`Gpu::check`].
@@ -304,15 +306,16 @@ impl Scene {
         self.gpu.check()
     }
 
-    /// The device.
+    /// The device that holds the scene.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Sets the light of the whole scene, from the next recording on. Its direction is in world space, towards the light.
+    /// Sets the light of the whole scene, from the next recording on. The light's direction is in world space and
+    /// points towards the light.
     ///
     /// # Errors
-    /// [`InputError`] as [`Light::validate`].
+    /// [`InputError`] if [`Light::validate`] refuses the light.
     ///
     /// # Examples
     ///
@@ -342,26 +345,27 @@ impl Scene {
         self.light
     }
 
-    /// Makes renderers look surfaces up in a sun's shadow map from their next [`prepare`] on.
+    /// Makes renderers sample a sun's shadow map in their shading, from their next [`prepare`] on.
     ///
     /// [`prepare`]: crate::render::Renderer::prepare
     pub(crate) fn set_shadowed(&mut self) {
         self.is_shadowed = true;
     }
 
-    /// Whether shading looks surfaces up in a sun's shadow map.
+    /// Whether shading samples a sun's shadow map.
     pub(crate) fn is_shadowed(&self) -> bool {
         self.is_shadowed
     }
 
-    /// Sets how characters divide their allowed displacement, from the next recording on.
+    /// Sets how the allowed displacement of characters is divided among levels of detail, bones and influences. The new
+    /// division holds from the next recording on.
     ///
     /// # Errors
-    /// [`InputError`] as [`ErrorBudget::validate`].
+    /// [`InputError`] if [`ErrorBudget::validate`] refuses the budget.
     ///
     /// # Examples
     ///
-    /// Bones that are fast and visible get half of the allowed displacement.
+    /// Half of the allowed displacement is for bones that keep an older pose.
     ///
     /// ```no_run
     /// # use relievo::scene::{ErrorBudget, Scene};
@@ -380,8 +384,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Advances the scene's time by `seconds`; negative values go back. Call it once a frame: the elapsed time decides
-    /// which bones the frame samples.
+    /// Advances the scene's time by `seconds`; a negative value turns it back. Call this once a frame, because the
+    /// elapsed time decides which bones the frame samples.
     ///
     /// # Errors
     /// [`InputError`] for a value that is not finite.
@@ -404,9 +408,9 @@ impl Scene {
         Ok(())
     }
 
-    /// The factor by which the last frame enlarged the displacement that an object's levels of detail may use. It is 1 as
-    /// long as the views' [`Quality::pixels`] holds. It exceeds 1 when the device has no memory left for the vertices of a
-    /// character's visible instances. [`Scene::refresh`] tries again to allocate that memory.
+    /// The factor by which the last frame enlarged the displacement that an object's levels of detail may use. The
+    /// factor is 1 as long as all views keep their [`Quality::pixels`]. It exceeds 1 when the device has no memory left
+    /// for the vertices of a character's visible instances. [`Scene::refresh`] tries again to allocate that memory.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -427,9 +431,9 @@ impl Scene {
         Ok(self.object_at(object)?.lod_bias)
     }
 
-    /// The largest number of draws that an object takes in one view and one layer. It is at most 64 if the object fits into
-    /// a binding of the device. Otherwise, a character is drawn in several chunks of instances, or a mesh in several pieces
-    /// of triangles, each with its own draws.
+    /// The largest number of draws that an object needs in one view and one layer. An object that fits into a binding
+    /// of the device needs at most 64. A larger character is drawn in several chunks of instances, and a larger mesh in
+    /// several pieces of triangles. Each chunk or piece has its own draws.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -437,8 +441,8 @@ impl Scene {
         Ok(self.object_at(object)?.draws())
     }
 
-    /// The number of bytes uploaded from the host for the last recorded frame: cameras, times, changes, and delayed uploads
-    /// ([`Scene::set_upload_budget`]).
+    /// The number of bytes that the last recorded frame uploads from the host: cameras, times, changes, and delayed
+    /// uploads ([`Scene::set_upload_budget`]).
     pub fn uploaded(&self) -> usize {
         self.uploaded
     }
@@ -448,14 +452,14 @@ impl Scene {
         self.now
     }
 
-    /// Creates a view into the scene. Set its camera ([`View::set`]) before recording a frame.
+    /// Creates a view into the scene. The view needs a camera ([`View::set`]) before a frame is recorded.
     ///
     /// # Errors
-    /// [`InputError`] for `pixels` that is negative or not finite; [`crate::gpu::GpuError`].
+    /// [`InputError`] if [`Quality::validate`] refuses the quality; [`crate::gpu::GpuError`].
     ///
     /// # Examples
     ///
-    /// A main view within half a pixel, and a mirror within two.
+    /// A main view with an error of at most half a pixel, and a mirror with an error of at most two pixels.
     ///
     /// ```no_run
     /// # use relievo::scene::{Camera, Quality, Scene};

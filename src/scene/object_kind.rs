@@ -1,4 +1,5 @@
-//! The interface of a scene to its kinds of objects: terrain, meshes, reliefs, characters and caller-defined kinds.
+//! The interface between a scene and its kinds of objects: terrain, meshes, reliefs, characters and caller-defined
+//! kinds.
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -21,12 +22,12 @@ use crate::scene::stage::Stage;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 
-/// A kind of object. The default methods suit static objects with spawned instances.
+/// A kind of object. The default methods suit static objects whose instances the caller spawns.
 pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
-    /// Name of the kind in errors.
+    /// The kind's name in error messages, such as `a mesh`.
     fn name(&self) -> &'static str;
 
-    /// Whether the caller spawns the instances; otherwise the kind has its own.
+    /// Whether the caller spawns the instances. If not, the kind creates them itself.
     fn is_spawned(&self) -> bool {
         true
     }
@@ -36,31 +37,32 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         false
     }
 
-    /// The corners of a box around the model at rest; `None` for a cube around the object's sphere.
+    /// The lowest and highest corner of a box around the model at rest, in model space. `None` means a cube around the
+    /// object's bounding sphere.
     fn model_box(&self) -> Option<[Vec3; 2]> {
         None
     }
 
-    /// A sphere around an instance in all of its motion; `None` for the object's sphere.
+    /// A sphere that contains an instance in all of its motion. `None` means the object's bounding sphere.
     fn sphere_of(&self, index: u32) -> Option<BoundingSphere> {
         let _ = index;
         None
     }
 
-    /// Notes that an instance was spawned. Returns a sphere around it if that differs from the object's.
+    /// Is called when an instance is spawned. Returns the instance's bounding sphere if it differs from the object's.
     fn spawned(&mut self, index: u32) -> Option<BoundingSphere> {
         let _ = index;
         None
     }
 
-    /// Notes that an instance was removed.
+    /// Is called when an instance is removed.
     fn despawned(&mut self, index: u32) {
         let _ = index;
     }
 
-    // On the device.
+    // Device resources.
 
-    /// Makes room for `capacity` instances, all of which start afresh. Changes nothing if it fails.
+    /// Allocates memory for `capacity` instances and resets the state of all instances. If this fails, nothing changes.
     fn renew(
         &mut self,
         gpu: &Gpu,
@@ -73,21 +75,22 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(())
     }
 
-    /// Creates the kind's resources on another device, with the object's materials and room for `capacity` instances.
+    /// Creates the kind's resources on another device, with the materials and the capacity in `target`.
     fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a>;
 
-    /// Takes the resources besides chunks that were made on another device: [`OnDevice::other`].
+    /// Takes over the kind's resources that were made on another device ([`OnDevice::other`]). Chunks are not among
+    /// them.
     fn adopt(&mut self, other: Box<dyn Made>) {
         let _ = other;
     }
 
-    /// Sets whether motion history is kept, once the object is refreshed.
+    /// Sets whether motion history is kept. It takes effect when the object is refreshed.
     fn keep_last(&mut self, keeps: bool) {
         let _ = keeps;
     }
 
-    /// The kind's resources for one view, which become bind group 1 there. `None` if group 1 is the same in all views.
-    /// `number` is the object's number.
+    /// The kind's resources for one view, bound there as group 1. `None` if group 1 is the same in all views. `number`
+    /// is the object's number.
     fn in_view(
         &self,
         gpu: &Gpu,
@@ -98,15 +101,16 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(None)
     }
 
-    // In a frame, in this order.
+    // Methods of a frame, in the order of their calls.
 
-    /// Finishes fades that end by scene time `now`. Returns the instances whose spheres changed.
+    /// Finishes cross-fades of clips that end by scene time `now`, in seconds. Returns the indices of instances whose
+    /// bounding spheres changed.
     fn settle(&mut self, now: f64) -> Vec<u32> {
         let _ = now;
         Vec::new()
     }
 
-    /// Allocates the memory that a frame's views need.
+    /// Allocates the memory that the views of a frame need.
     fn provide(
         &mut self,
         gpu: &Gpu,
@@ -118,37 +122,37 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(Provided::default())
     }
 
-    /// Prepares the jobs of a frame.
+    /// Prepares the kind's compute jobs of a frame.
     fn fit(&mut self, gpu: &Gpu, fitted: &Fitted<'_>, staged: &mut Staged) -> Result<(), Error> {
         let _ = (gpu, fitted, staged);
         Ok(())
     }
 
-    /// Stages the changes since the last frame. `now` is the scene's time in seconds.
+    /// Stages the kind's changes since the last frame. `now` is the scene's time in seconds.
     fn stage(&mut self, staged: &mut Staged, frame: &Frame, now: f64) -> Result<(), Error> {
         let _ = (staged, frame, now);
         Ok(())
     }
 
-    /// Records copies and jobs that precede the stages of the frame.
+    /// Records copies and jobs that run before the stages of the frame.
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {
         let _ = encoder;
     }
 
-    /// Adds a stage to a compute pass.
+    /// Adds the kind's work of a stage to a compute pass.
     fn dispatch(&self, stage: Stage, pass: &mut wgpu::ComputePass<'_>) {
         let _ = (stage, pass);
     }
 
-    // On the host.
+    // Queries on the host.
 
-    /// The triangles of an instance in full detail, at scene time `now`.
+    /// The triangles of an instance in full detail, posed at scene time `now`, in seconds.
     fn surfaces(&self, index: u32, now: f64) -> Result<Vec<Surface<'_>>, InputError> {
         let _ = (index, now);
         Ok(Vec::new())
     }
 
-    /// The first hit of an instance by a ray, within the ray's limit.
+    /// The first hit of a ray on an instance, within the ray's limit.
     fn hit(&self, instance: &Placed, ray: &UnitRay) -> Result<Option<SurfaceHit>, InputError> {
         let UnitRay { origin, direction, limit } = *ray;
         let surfaces = self.surfaces(instance.index, instance.now)?;
@@ -156,7 +160,8 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(hits.fold(None, SurfaceHit::nearer))
     }
 
-    /// The corners of the smallest box around an instance, in the space of its place.
+    /// The lowest and highest corner of the smallest box around an instance, in the space that [`Placed::place`] maps
+    /// to.
     fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {
         let surfaces = self.surfaces(instance.index, instance.now)?;
         let boxes = surfaces.iter().map(|surface| surface.bounds(instance.place));
@@ -164,13 +169,14 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(around.unwrap_or([instance.place.translation; 2]))
     }
 
-    /// The corners of a looser but cheaper box; `None` if the smallest is as cheap.
+    /// The corners of a larger box that takes less time to compute. `None` if the smallest box takes no more time.
     fn wide_box(&self, instance: &Placed) -> Result<Option<[DVec3; 2]>, InputError> {
         let _ = instance;
         Ok(None)
     }
 
-    /// Whether an instance may extend beyond its sphere. Rays are then tested against its looser box.
+    /// Whether an instance may reach beyond its bounding sphere. If so, rays are first tested against
+    /// [`ObjectKind::wide_box`].
     fn may_leave_sphere(&self, index: u32) -> bool {
         let _ = index;
         false
@@ -178,79 +184,80 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
 }
 
 impl dyn ObjectKind {
-    /// The kind as `K`, if it is one.
+    /// The kind as the type `K`; `None` if it has another type.
     pub fn downcast<K: ObjectKind>(&self) -> Option<&K> {
         (self as &dyn Any).downcast_ref()
     }
 
-    /// Mutable form of `downcast`.
+    /// Mutable form of `downcast`: the kind as the type `K`.
     pub fn downcast_mut<K: ObjectKind>(&mut self) -> Option<&mut K> {
         (self as &mut dyn Any).downcast_mut()
     }
 }
 
-/// A kind's resources for one view.
+/// Resources that a kind of object keeps for one view.
 pub(super) trait KindInView: Debug + wgpu::WasmNotSendSync {
-    /// Bind group 1.
+    /// Bind group 1 in this view.
     fn group(&self) -> &Group;
 
-    /// Stages the resources for a frame of the view's camera.
+    /// Stages the resources for a frame that is seen through `camera`.
     fn stage(&self, staged: &mut Staged, camera: &Camera) -> Result<(), Error>;
 }
 
-/// A future that creates resources on another device. Natively, it may move to another thread.
+/// A future that creates an object's resources on another device. Outside browsers, it may move to another thread.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) type Making<'a> = Pin<Box<dyn Future<Output = Result<OnDevice, Error>> + Send + 'a>>;
-/// A future that creates resources on another device.
+/// A future that creates an object's resources on another device.
 #[cfg(target_arch = "wasm32")]
 pub(super) type Making<'a> = Pin<Box<dyn Future<Output = Result<OnDevice, Error>> + 'a>>;
 
-/// Where the resources of an object are made again.
+/// Target for creating an object's resources again: a device, and the parameters of the object.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MakeOn<'a> {
     pub gpu: &'a Gpu,
     pub layouts: &'a SceneLayouts,
-    /// Materials of the object, if it has any.
+    /// Materials and images of the object, if it has any.
     pub looks: Option<&'a Looks>,
-    /// Number of instances that there is room for.
+    /// Number of instances to allocate memory for.
     pub capacity: usize,
 }
 
-/// Any resource made on a device.
+/// A resource of any type, made on a device.
 pub(super) trait Made: Any + Debug + wgpu::WasmNotSend {}
 
 impl<T: Any + Debug + wgpu::WasmNotSend> Made for T {}
 
-/// Device resources of an object.
+/// All device resources of an object.
 #[derive(Debug)]
 pub(super) struct OnDevice {
     pub chunks: Vec<Chunk>,
-    /// The kind's resources besides chunks ([`ObjectKind::adopt`]).
+    /// Resources of the kind other than chunks, for [`ObjectKind::adopt`].
     pub other: Box<dyn Made>,
 }
 
 impl OnDevice {
-    /// Chunks without other resources.
+    /// Resources that consist of chunks alone.
     pub fn chunks(chunks: Vec<Chunk>) -> Self {
         Self { chunks, other: Box::new(()) }
     }
 }
 
-/// Inputs for deciding which of an object's instances a frame's views may see.
+/// Inputs that decide which instances of an object the views of a frame may see.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SeenBy<'a> {
     pub views: &'a [SelectView],
-    /// The object, with the scale of its metric before the LOD bias of memory.
+    /// The object in kernel format. Its metric scale does not contain the LOD bias yet.
     pub object: &'a LodObject,
     pub instances: &'a [SceneInstance],
     /// The scene's time in seconds.
     pub now: f64,
 }
 
-/// Result of providing memory for a frame.
+/// Result of [`ObjectKind::provide`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Provided {
-    /// LOD bias of the object: 1 unless memory has ended.
+    /// The object's LOD bias, a factor of the allowed displacement. It is 1, or more if the device has no memory for
+    /// the finer levels.
     pub lod_bias: f32,
     pub replaced: Replaced,
 }
@@ -261,17 +268,17 @@ impl Default for Provided {
     }
 }
 
-/// Resources that were replaced.
+/// Which resources [`ObjectKind::provide`] replaced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Replaced {
     Nothing,
-    /// Buffers of some chunks.
+    /// Only buffers of some chunks.
     Buffers,
-    /// The chunks themselves. Instances of divided chunks start afresh.
+    /// The chunks themselves. The state of instances in a divided chunk is reset.
     Chunks,
 }
 
-/// Inputs for preparing a kind's jobs of a frame.
+/// Inputs of [`ObjectKind::fit`], which prepares the jobs of a frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fitted<'a> {
     pub layout: &'a Layout,
@@ -282,25 +289,25 @@ pub(super) struct Fitted<'a> {
     pub chunks: &'a [Chunk],
 }
 
-/// An instance at its place.
+/// A placed instance, for queries on the host.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Placed {
     pub index: u32,
     /// The scene's time in seconds.
     pub now: f64,
-    /// The transform from model space to the cell's corner.
+    /// The transform from model space to world axes, relative to the corner of `cell`.
     pub place: DAffine3,
     pub cell: [i32; 3],
-    /// The corners of a box around the placed bounding sphere.
+    /// The lowest and highest corner of a box around the placed bounding sphere.
     pub sphere_box: [DVec3; 2],
 }
 
-/// A ray relative to a cell's corner.
+/// A ray relative to the corner of a cell.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct UnitRay {
     pub origin: DVec3,
-    /// Of length 1.
+    /// Direction of the ray, of length 1.
     pub direction: DVec3,
-    /// The largest distance of a hit.
+    /// The largest distance from `origin` at which a hit counts.
     pub limit: f64,
 }

@@ -14,18 +14,18 @@ use crate::scene::terrain::TerrainSource;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Adds terrain and shows its patches. The device generates them, unless the terrain is made from the caller's fields
-    /// ([`TerrainSource::from_fields`]). The call waits until the heights are read back: views cull patches by them, and
-    /// [`Scene::ground`] answers from them.
+    /// Adds terrain and shows its patches. The device generates the heights, or the caller provides them
+    /// ([`TerrainSource::from_fields`]). The call waits until the heights are read back to the host. Views cull patches
+    /// by these heights, and [`Scene::ground`] returns them.
     ///
     /// # Errors
-    /// [`InputError`] for a configuration or patches out of bounds, for no patch, for a patch that is given twice, and for
-    /// fields that have no margin, have another size, or are fewer than the patches;
-    /// [`crate::gpu::GpuError`].
+    /// [`InputError`] for a configuration or patches out of bounds, for an empty list of patches, and for a patch that
+    /// is given twice. [`InputError`] also for fields without a margin, fields of another size, and fewer fields than
+    /// patches. [`crate::gpu::GpuError`].
     ///
     /// # Examples
     ///
-    /// Nine patches around the origin, from a seed.
+    /// Generates nine patches around the origin. The text is the seed.
     ///
     /// ```no_run
     /// # use relievo::scene::{Scene, TerrainConfig, TerrainSource};
@@ -41,8 +41,8 @@ impl Scene {
         self.gpu.clone().block_on(self.add_terrain_async(source))
     }
 
-    /// Like `Scene::add_terrain`, but completes once the device has generated the patches and reported its errors; see
-    /// [`Gpu::wait_async`](crate::gpu::Gpu::wait_async).
+    /// Like `Scene::add_terrain`, but the future completes once the device has generated the patches and reported its
+    /// errors; see [`Gpu::wait_async`](crate::gpu::Gpu::wait_async).
     ///
     /// # Errors
     /// As for `Scene::add_terrain`.
@@ -52,13 +52,13 @@ impl Scene {
         self.add_checked(object.awaiting(pending)).await
     }
 
-    /// Adds a static mesh: all meshes of a model in the rest pose, with their materials and levels of detail. Without
-    /// levels ([`add_levels`](crate::skinning::add_levels)), every instance is drawn in full detail.
+    /// Adds a static mesh: all meshes of a model in the rest pose, with their materials and levels of detail. A model
+    /// without levels ([`add_levels`](crate::skinning::add_levels)) is always drawn in full detail.
     ///
-    /// The object has room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`] describes growth beyond it. A
-    /// world unit is one unit of the model times [`Placement::scale`](crate::scene::Placement::scale).
-    /// [`BoundingSphere::in_clips`](crate::skinning::bounding_sphere::BoundingSphere::in_clips) gives the approximate size
-    /// of a model.
+    /// The object has memory for at least `capacity` instances, 1 to 2²⁰, and grows when more are spawned
+    /// ([`Scene::spawn`]). One unit of the model is [`Placement::scale`](crate::scene::Placement::scale) world units
+    /// long. [`BoundingSphere::in_clips`](crate::skinning::bounding_sphere::BoundingSphere::in_clips) returns the
+    /// approximate size of a model.
     ///
     /// # Errors
     /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with
@@ -66,7 +66,7 @@ impl Scene {
     ///
     /// # Examples
     ///
-    /// Room for 50 stones, with levels of detail.
+    /// Adds a stone with levels of detail, and memory for 50 instances.
     ///
     /// ```no_run
     /// # use relievo::asset::Model;
@@ -84,8 +84,8 @@ impl Scene {
         Ok(self.add(object))
     }
 
-    /// Like [`Scene::add_mesh`], but completes once the device has reported its errors
-    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). Adds nothing if there are any.
+    /// Like [`Scene::add_mesh`], but the future completes once the device has reported its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). After an error, nothing is added.
     ///
     /// # Errors
     /// As for [`Scene::add_mesh`].
@@ -94,12 +94,12 @@ impl Scene {
         self.add_checked(object).await
     }
 
-    /// Adds a character: bones are sampled from clips and gated, meshes are morphed and skinned, each only as finely as a
-    /// view needs. A model without clips becomes a mesh ([`Scene::add_mesh`]). The object has room for at least `capacity`
-    /// instances, 1 to 2²⁰; [`Scene::spawn`] describes growth beyond it.
+    /// Adds a character: an animated model. Bones are sampled from clips, and meshes are morphed and skinned, only as
+    /// precisely as the views need. A model without clips becomes a mesh ([`Scene::add_mesh`]). The object has memory
+    /// for at least `capacity` instances, 1 to 2²⁰, and grows when more are spawned ([`Scene::spawn`]).
     ///
-    /// Call [`add_levels`](crate::skinning::add_levels) on the model first; otherwise its only level of detail is the full
-    /// mesh.
+    /// Call [`add_levels`](crate::skinning::add_levels) on the model first. Without this call, the full mesh is the
+    /// only level of detail.
     ///
     /// # Errors
     /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with
@@ -108,8 +108,8 @@ impl Scene {
         self.add_character_with(model, capacity, &CharacterOptions::default())
     }
 
-    /// Like [`Scene::add_character`], with animation layers above the base, or with root motion extracted from the clips.
-    /// Both are ignored for a model without clips.
+    /// Like [`Scene::add_character`], with options: animation layers above the base layer, and root motion extracted
+    /// from the clips. For a model without clips, the options are ignored.
     ///
     /// # Errors
     /// As for [`Scene::add_character`]; [`InputError`] for more than 7 layers, for a bone that the model does not have, and
@@ -117,7 +117,7 @@ impl Scene {
     ///
     /// # Examples
     ///
-    /// An upper body that may wave while the legs walk, and walking that moves the instance.
+    /// Adds people whose upper body may wave while the legs walk. Walking moves the instance.
     ///
     /// ```no_run
     /// # use relievo::asset::Model;
@@ -141,8 +141,8 @@ impl Scene {
         Ok(self.add(object))
     }
 
-    /// Like [`Scene::add_character`], but completes once the device has reported its errors
-    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). Adds nothing if there are any.
+    /// Like [`Scene::add_character`], but the future completes once the device has reported its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). After an error, nothing is added.
     ///
     /// # Errors
     /// As for [`Scene::add_character`].
@@ -178,8 +178,8 @@ impl Scene {
         Ok(object.awaiting(pending))
     }
 
-    /// Adds a mesh with relief mapping. The object has room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`]
-    /// describes growth beyond it.
+    /// Adds a mesh with relief mapping. The object has memory for at least `capacity` instances, 1 to 2²⁰, and grows
+    /// when more are spawned ([`Scene::spawn`]).
     ///
     /// # Errors
     /// [`InputError`] for a capacity out of range, for maps, options or a mesh that do not fit each other, for a mesh with
@@ -188,7 +188,7 @@ impl Scene {
     ///
     /// # Examples
     ///
-    /// A brick wall, 4 units wide, with its maps twice along each edge.
+    /// A brick wall, 4 units wide, that repeats its maps twice along each edge.
     ///
     /// ```no_run
     /// # use relievo::scene::{HeightMap, Placement, Relief, Scene};
@@ -203,8 +203,8 @@ impl Scene {
         Ok(self.add(object))
     }
 
-    /// Like [`Scene::add_relief`], but completes once the device has reported its errors
-    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). Adds nothing if there are any.
+    /// Like [`Scene::add_relief`], but the future completes once the device has reported its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). After an error, nothing is added.
     ///
     /// # Errors
     /// As for [`Scene::add_relief`].
@@ -213,16 +213,16 @@ impl Scene {
         self.add_checked(object).await
     }
 
-    /// Adds an object of a caller-defined kind. It has room for at least `capacity` instances, 1 to 2²⁰; [`Scene::spawn`]
-    /// describes growth beyond it. Its levels change at once ([`Transition::Hard`]).
+    /// Adds an object of a caller-defined kind. The object has memory for at least `capacity` instances, 1 to 2²⁰, and
+    /// grows when more are spawned ([`Scene::spawn`]). Its levels of detail change at once ([`Transition::Hard`]).
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, and for invalid levels, parts, indices or an invalid sphere of the kind;
-    /// the error names the field (`kind.parts[0].levels[1]`). [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, and for invalid levels, parts, indices or an invalid sphere of the
+    /// kind. The error names the field, such as `kind.parts[0].levels[1]`. [`crate::gpu::GpuError`].
     ///
     /// # Examples
     ///
-    /// Two patches of the caller's grass, a [`Kind`] as in `examples/kind`.
+    /// Two instances of grass. The grass is a [`Kind`] of the caller, as in `examples/kind`.
     ///
     /// ```no_run
     /// # use relievo::scene::kind::Kind;
@@ -240,8 +240,8 @@ impl Scene {
         Ok(self.add(object.awaiting(pending)))
     }
 
-    /// Like [`Scene::add_kind`], but completes once the device has reported its errors
-    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). Adds nothing if there are any.
+    /// Like [`Scene::add_kind`], but the future completes once the device has reported its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). After an error, nothing is added.
     ///
     /// # Errors
     /// As for [`Scene::add_kind`].
@@ -251,7 +251,7 @@ impl Scene {
         self.add_checked(object.awaiting(pending)).await
     }
 
-    /// Adds an object, unless the device reports errors.
+    /// Waits for the device's errors, and adds the object if there are none.
     async fn add_checked(&mut self, object: Object) -> Result<ObjectId, Error> {
         self.gpu.check_async().await?;
         Ok(self.add(object))
@@ -271,7 +271,7 @@ impl Scene {
         id
     }
 
-    /// Tells all objects whether any of them has a rank.
+    /// Notes in every object whether any object of the scene has a rank.
     fn update_ranks(&mut self) {
         let is_ranked = self.objects.iter().any(|object| object.level_of_detail.rank.is_some());
         for object in self.objects.iter_mut() {
@@ -280,7 +280,7 @@ impl Scene {
         }
     }
 
-    /// Removes an object and all of its instances, and frees its memory.
+    /// Removes an object with all of its instances, and frees its memory.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -296,7 +296,7 @@ impl Scene {
     }
 
     /// Shows or hides all instances of an object in all views, from the next recording on. Hidden instances are not
-    /// sampled, skinned or drawn, but the time of their clips advances.
+    /// sampled, skinned or drawn. The time of their clips still advances.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene; [`crate::gpu::GpuError`].
@@ -313,7 +313,7 @@ impl Scene {
     pub fn show(&mut self, object: ObjectId, is_shown: bool) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
         if std::mem::replace(&mut entry.is_shown, is_shown) != is_shown {
-            // Only this object's entries are written; a new layout writes all.
+            // Writes only the entries of this object. A new layout would write those of all objects.
             let entries = entry.chunks.iter().map(|chunk| (chunk.number, entry.lod_object(chunk)));
             let entries: Vec<_> = entries.collect();
             if let Some(layout) = &self.layout {
@@ -325,14 +325,14 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets how an object's levels of detail are chosen and change, from the next recording on. Compile renderers for a new
-    /// transition ([`Renderer::prepare`](crate::render::Renderer::prepare)).
+    /// Sets how an object's levels of detail are chosen and change, from the next recording on. After a change of the
+    /// transition, compile the renderers again ([`Renderer::prepare`](crate::render::Renderer::prepare)).
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, and as [`LevelOfDetail::validate`]. With
-    /// [`Transition::Geomorph`], also for an object without levels of detail or without partners in its meshes
-    /// ([`add_levels`](crate::skinning::add_levels) finds them): terrain, reliefs, and meshes that exceed a binding of the
-    /// device.
+    /// [`InputError`] for an object that is not of this scene, and for settings that [`LevelOfDetail::validate`]
+    /// refuses. [`Transition::Geomorph`] needs levels of detail, and for each vertex a partner to move towards
+    /// ([`add_levels`](crate::skinning::add_levels) finds partners). So geomorphs are always refused for terrain, for
+    /// reliefs, and for meshes that exceed a binding of the device.
     ///
     /// # Examples
     ///
@@ -369,7 +369,7 @@ impl Scene {
         Ok(())
     }
 
-    /// How the levels of detail of an object are chosen and change.
+    /// How an object's levels of detail are chosen and change.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -377,7 +377,8 @@ impl Scene {
         Ok(&self.object_at(object)?.level_of_detail)
     }
 
-    /// Whether an object can geomorph: it has levels of detail, and its vertices have partners.
+    /// Whether an object's levels can geomorph. This needs levels of detail, and for each vertex a partner to move
+    /// towards.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.

@@ -5,36 +5,39 @@ use crate::animation::root_motion::Taken;
 use crate::asset::Model;
 use crate::{InputError, error};
 
-/// Layers and root motion of a character, for [`Scene::add_character_with`](crate::scene::Scene::add_character_with).
+/// Animation layers and root motion of a character, for
+/// [`Scene::add_character_with`](crate::scene::Scene::add_character_with).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CharacterOptions<'a> {
-    /// The layers above the base, at most 7. Their weights start at 0. Each costs 16 bytes per instance, and as much
-    /// sampling as the base while it has a weight.
+    /// The animation layers above the base layer, at most 7. Their weights are 0 at first. A layer costs 16 bytes per
+    /// instance. While its weight is above 0, it costs as much sampling as the base layer.
     pub layers: Vec<LayerMask<'a>>,
-    /// Root motion to extract from all clips, which then play in place; see
-    /// [`Scene::root_motion`](crate::scene::Scene::root_motion).
+    /// Root motion to extract from all clips. The clips then play in place; [`Scene::root_motion`] returns the motion.
+    ///
+    /// [`Scene::root_motion`]: crate::scene::Scene::root_motion
     pub root_motion: Option<RootOptions<'a>>,
 }
 
-/// The bones that a layer animates.
+/// The bones that an animation layer moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LayerMask<'a> {
     /// All bones.
     All,
-    /// A bone, given by its name or its index in digits, and all bones below it.
+    /// A bone and all bones below it. The bone is given by its name, or by its index in digits.
     Below(&'a str),
 }
 
 /// Root motion to extract from clips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RootOptions<'a> {
-    /// The bone that carries the motion, given by its name or its index in digits.
+    /// The bone that carries the motion, given by its name, or by its index in digits.
     pub bone: &'a str,
-    /// The parts of the motion to extract.
+    /// The components of the motion to extract.
     pub taken: Taken,
 }
 
-/// The index of a model's bone, by its name or its index. A name that is a number takes precedence.
+/// The index of a model's bone. `name_or_index` is the bone's name, or its index in digits. A bone whose name is that
+/// number takes precedence.
 ///
 /// # Errors
 /// [`InputError`] that lists up to 20 bones.
@@ -49,7 +52,8 @@ pub(super) fn bone_of(model: &Model, name_or_index: &str) -> Result<usize, Input
 }
 
 impl RootOptions<'_> {
-    /// Extracts the root motion from all clips of a model.
+    /// Extracts the root motion from all clips of a model. The model keeps clips that play in place. Returns one motion
+    /// per clip.
     ///
     /// # Errors
     /// As for [`RootMotion::extract`]; [`InputError`] for a bone that the model does not have.
@@ -63,12 +67,13 @@ impl RootOptions<'_> {
     }
 }
 
-/// Appearance of terrain in colour. It has no effect on other layers.
+/// Appearance of terrain in the layer [`Layer::Color`](crate::render::Layer::Color). The style has no effect on other
+/// layers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum TerrainStyle {
-    /// Textures of the zones, blended by height.
+    /// The textures of the terrain's zones, blended by height.
     #[default]
     Textured,
-    /// Lit edges of the drawn triangles, on dark, unlit ground.
+    /// Lit edges of the drawn triangles on dark, unlit ground.
     Wireframe,
 }

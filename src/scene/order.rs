@@ -1,4 +1,4 @@
-//! Drawing order of transparent surfaces: instance by instance, from back to front.
+//! The drawing order of transparent surfaces: instance by instance, from back to front.
 
 use crate::lod::select::reference::{is_shown, nearly_seen, placed_sphere};
 use crate::lod::sorted::SortedDraw;
@@ -8,7 +8,7 @@ use crate::scene::chunk::{Chunk, SortedParts};
 use crate::scene::object::Object;
 
 impl Chunk {
-    /// Appends the parts with sorted draws to those of other objects.
+    /// Appends a draw for each instance of each blended part to `all`, and notes where each part's draws begin.
     pub(super) fn lay_out_sorted(&mut self, all: &mut Vec<SortedDraw>) {
         self.sorted.clear();
         let (instances, mut first_draw) = (self.slots.len() as u32, self.range.first_draw);
@@ -27,19 +27,19 @@ impl Chunk {
     }
 }
 
-/// An instance with its sort key.
+/// An instance with the key that it is sorted by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ordered {
-    /// Distance from the eye to the middle of the bounding sphere; in a parallel view, distance along the viewing
-    /// direction.
+    /// In a perspective view: distance from the eye to the middle of the bounding sphere. In a parallel view: distance
+    /// along the viewing direction.
     pub distance: f64,
-    /// Index of its object in the layout, and its index in the object.
+    /// Index of the object in the layout (`object`), and index of the instance in the object (`instance`).
     pub object: usize,
     pub instance: u32,
 }
 
-/// Sorts instances with transparent parts that a view may see, from back to front. Equal distances keep the order of
-/// objects and instances. The device decides which of them are visible.
+/// Sorts the instances with transparent parts that a view may see, from back to front. Instances at equal distances
+/// keep the order of objects and instances. The device then decides which of them are visible.
 pub(super) fn back_to_front<'a>(
     order: &mut Vec<Ordered>,
     objects: impl Iterator<Item = &'a Object>,

@@ -1,39 +1,42 @@
-//! A controller of a view's triangles by the time that frames take.
+//! A controller that limits the triangles of a view until frames keep a time limit.
 
-/// Time constant of the average of frame times, in frames.
+/// Time constant of the moving average of frame times, in frames.
 const FRAMES: f32 = 6.0;
 
-/// Fraction of the limit within which nothing changes.
+/// Dead band: the triangle limit stays while frames are shorter than the time limit by at most this fraction.
 const DEAD_BAND: f32 = 0.05;
 
-/// Largest factors of the triangles per frame.
+/// Factors of the triangle limit per frame: the smallest when it falls (`FALL`), and the largest when it rises
+/// (`RISE`).
 const FALL: f32 = 0.85;
 const RISE: f32 = 1.04;
 
-/// Number of triangles to begin with.
+/// The initial triangle limit, which is also the largest one.
 const MOST: f32 = 64e6;
 
-/// Number of triangles below which nothing changes.
+/// The smallest triangle limit.
 const LEAST: f32 = 1e3;
 
-/// Adjusts a limit of triangles so that frames take a given time.
+/// Adjusts a triangle limit so that frames take a given time.
 ///
-/// The time is averaged over some frames. Where it is off by more than a twentieth, the limit is multiplied by the square
-/// root of the ratio, within bounds: it falls faster than it rises. So the limit settles from one side, and does not
-/// oscillate around a level that takes too long.
+/// Frame times are averaged over some frames. If the average exceeds the time limit, or is shorter by more than a
+/// twentieth, the triangle limit is multiplied by the square root of their ratio. This factor is bounded, so that the
+/// triangle limit falls faster than it rises. So the triangle limit settles from one side, and does not oscillate
+/// around a level of detail that takes too long.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pacer {
     limit: Option<f32>,
     average: Option<f32>,
-    /// The smallest limit at which frames took too long, with the number of frames since then.
+    /// The last triangle limit at which frames took too long, and the number of frames since then.
     too_many: Option<(f32, u32)>,
 }
 
-/// Frames after which a limit that took too long is tried again.
+/// Number of frames after which a triangle limit that took too long may be tried again.
 const PATIENCE: u32 = 240;
 
 impl Pacer {
-    /// Takes the time of a frame into account. `target` is the limit in the same unit.
+    /// Adjusts the triangle limit after a frame. `time` is the time that the frame took, and `target` is the time limit
+    /// in the same unit.
     pub fn took(&mut self, time: f32, target: f32) {
         let average = self.average.map_or(time, |average| average + (time - average) / FRAMES);
         self.average = Some(average);
@@ -55,7 +58,7 @@ impl Pacer {
         self.limit = Some(next.clamp(LEAST, MOST));
     }
 
-    /// The limit of triangles; `None` before the first frame.
+    /// The triangle limit; `None` before the first frame.
     pub fn limit(&self) -> Option<u32> {
         self.limit.map(|limit| limit as u32)
     }
@@ -65,7 +68,8 @@ impl Pacer {
 mod tests {
     use super::*;
 
-    /// Frames take 2 ms and 1 ms per 100,000 triangles; levels are coarse, so that triangles come in steps of a tenth.
+    /// A simulated frame time in milliseconds: 2 ms, plus 1 ms per 100,000 triangles. The levels of detail are coarse,
+    /// so the number of triangles changes in steps of a tenth.
     fn time(limit: u32, scene: f32) -> f32 {
         let wanted = (limit as f32).min(scene);
         let steps = (wanted.log2() / 1.1_f32.log2()).floor();

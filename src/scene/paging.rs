@@ -1,5 +1,5 @@
-//! Pages of skinned vertices that a character needs in a frame. The host predicts the device's decisions, so that memory
-//! follows visibility and no frame waits for a readback.
+//! Counts the pages of 64 skinned vertices that a character needs in a frame. The host predicts the device's decisions,
+//! so that memory follows visibility and no frame waits for a readback.
 
 use std::ops::Range;
 
@@ -14,37 +14,39 @@ use crate::shared::lod::object::{FADE_PROGRESS, object_flags_criterion, object_f
 use crate::shared::lod::view::POSITION_SLACK;
 use crate::skinning::pages::{KEEPING_PAGE_BYTES, PAGE_BYTES};
 
-/// Up to this size (4 MiB), pages for all instances in full detail are allocated at once.
+/// Memory for the first pages of a mesh, in bytes (4 MiB). If that suffices for all instances in full detail, the mesh
+/// never needs more.
 const SMALL: usize = 4 << 20;
 
-/// Safety factor: rounding may make the device allow less than the host.
+/// Safety factor of the metric, because rounding may make the device allow a smaller displacement than the host.
 const CAUTION: f32 = 0.999;
 
-/// Ratio of successive displacements to try, if pages for the visible instances exceed the memory.
+/// Ratio of successive LOD biases that are tried if the pages for the visible instances exceed the memory.
 const COARSER: f32 = 1.25;
 
-/// Largest factor to try.
+/// The largest LOD bias that is tried.
 const COARSEST: f32 = 1e6;
 
-/// The last level for which hysteresis and fades keep the finest levels: whatever a view drew before, it draws none finer.
+/// The level that is assumed for the last frame: the finest. With hysteresis or fades, any other level of the last
+/// frame makes a view draw the same level or a coarser one.
 const FINEST: u32 = 0;
 
-/// Page counts of one mesh, for some instances.
+/// Page counts of one mesh for a number of instances.
 #[derive(Debug, Clone)]
 pub(super) struct Paging {
-    /// Clusters per level of detail.
+    /// Number of clusters of each level of detail. A cluster of an instance takes a page.
     clusters: Vec<u32>,
-    /// Pages for all instances in full detail.
+    /// Number of pages for all instances in full detail.
     full: u32,
-    /// Largest number of pages that a binding holds, or that there is memory for.
+    /// The largest number of pages that fit into a binding, or into the device's memory.
     pub most: u32,
-    /// Bytes per page.
+    /// Size of a page in bytes.
     bytes: usize,
 }
 
 impl Paging {
-    /// Page counts of a mesh: `clusters` per level, a number of instances, bytes per binding, and whether previous
-    /// positions are kept.
+    /// The page counts of a mesh. `clusters` has the number of clusters of each level, and `binding` is the size of a
+    /// binding in bytes. With `keeps_last`, pages also hold the last frame's positions.
     pub fn new(clusters: Vec<u32>, instances: usize, binding: u64, keeps_last: bool) -> Self {
         let bytes = if keeps_last { KEEPING_PAGE_BYTES } else { PAGE_BYTES };
         let full = clusters.first().map_or(0, |clusters| instances * *clusters as usize);
@@ -52,18 +54,18 @@ impl Paging {
         Self { clusters, full: u32::try_from(full).unwrap_or(u32::MAX), most, bytes }
     }
 
-    /// Whether `pages` suffice for all instances in full detail.
+    /// Whether a number of pages suffices for all instances in full detail.
     pub fn is_full(&self, pages: usize) -> bool {
         pages as u64 >= u64::from(self.full)
     }
 
-    /// The initial number of pages.
+    /// The number of pages to allocate when the character is added.
     pub fn initial(&self) -> u32 {
         self.full.min((SMALL / self.bytes) as u32).min(self.most).max(1)
     }
 
-    /// The number of pages to allocate for a frame that needs `needed`. It is larger, so that the next frames need no new
-    /// allocation.
+    /// The number of pages to allocate for a frame that needs `needed` pages. The result includes a reserve, so that
+    /// the next frames need no new allocation.
     pub fn enough(&self, needed: u32) -> u32 {
         needed.saturating_add(needed / 2).min(self.full).min(self.most).max(1)
     }
@@ -74,20 +76,20 @@ impl Paging {
     }
 }
 
-/// Sliding minimum of an instance's metric. A fade may still show the level of the smallest metric.
+/// Sliding minimum of an instance's metric. A fade may still show the level that belongs to the smallest recent metric.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Held {
     metric: f32,
-    /// Scene time of `metric`.
+    /// Scene time of `metric`, in seconds.
     time: f64,
-    /// The smallest metric after `time`.
+    /// The smallest metric since `time`, without `metric` itself.
     next: f32,
 }
 
 impl Held {
     const NONE: Self = Self { metric: f32::MAX, time: f64::MIN, next: f32::MAX };
 
-    /// Takes the metric at scene time `now` into account; returns the smallest of the last `seconds`.
+    /// Adds the metric at scene time `now`. Returns the smallest metric of the last `seconds` seconds.
     fn with(&mut self, metric: f32, now: f64, seconds: f64) -> f32 {
         if metric <= self.metric {
             *self = Self { metric, time: now, next: f32::MAX };
@@ -100,22 +102,24 @@ impl Held {
     }
 }
 
-/// Visibility of a character's instances in a frame's views.
+/// Visibility of a character's instances in the views of a frame.
 #[derive(Debug)]
 pub(super) struct Seen<'a> {
     object: &'a LodObject,
-    /// Smallest metric in any view, per instance, not scaled; `None` if no view may see it.
+    /// For each instance, its smallest metric in any view, before the object's metric scale; `None` if no view may see
+    /// it.
     metrics: Vec<Option<f32>>,
 }
 
 impl<'a> Seen<'a> {
-    /// All instances, in the views of a frame. `held` has the metrics of the last frames.
+    /// Computes the visibility of all instances in the views of a frame. `held` keeps recent metrics from frame to
+    /// frame.
     pub fn new(seen: &SeenBy<'a>, held: &mut Vec<Held>) -> Self {
         let SeenBy { views, object, instances, now } = *seen;
         let mut metrics: Vec<Option<f32>> =
             instances.iter().map(|instance| least_metric(views, object, instance)).collect();
         if object.rate > 0.0 {
-            // A fade, and another one that waited for it, with room for rounded steps.
+            // Duration of a fade and of a second fade that waited for it, with a reserve for rounded steps.
             let seconds = 3.0 * f64::from(FADE_PROGRESS as f32 / object.rate) + 0.1;
             held.resize(instances.len(), Held::NONE);
             for (metric, held) in metrics.iter_mut().zip(held) {
@@ -128,7 +132,7 @@ impl<'a> Seen<'a> {
         Self { object, metrics }
     }
 
-    /// Number of pages per mesh that the visible instances of `slots` need, with the metric scaled by
+    /// For each mesh, the number of pages that the visible instances of `slots` need. The metric is scaled by
     /// `lod_bias`.
     fn exactly(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u64> {
         let factor = CAUTION * lod_bias * self.object.metric_scale;
@@ -137,19 +141,20 @@ impl<'a> Seen<'a> {
         meshes.iter().map(|mesh| mesh.needed(levels())).collect()
     }
 
-    /// As [`Seen::exactly`], but at most [`Paging::most`] per mesh.
+    /// For each mesh, the number of pages that the visible instances of `slots` need, but at most [`Paging::most`].
     pub fn pages(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> Vec<u32> {
         let pages = self.exactly(slots, meshes, lod_bias);
         pages.iter().zip(meshes).map(|(pages, mesh)| (*pages).min(mesh.most.into()) as u32).collect()
     }
 
-    /// Whether the needed pages of every mesh are within [`Paging::most`].
+    /// Whether each mesh needs at most [`Paging::most`] pages for the visible instances of `slots`.
     pub fn fits(&self, slots: &Range<usize>, meshes: &[Paging], lod_bias: f32) -> bool {
         let pages = self.exactly(slots, meshes, lod_bias);
         pages.iter().zip(meshes).all(|(pages, mesh)| *pages <= u64::from(mesh.most))
     }
 
-    /// The LOD bias with which all chunks fit: 1 unless the visible instances need more memory than there is.
+    /// The LOD bias at which all chunks fit into memory. It is 1 unless the visible instances need more memory than
+    /// there is.
     pub fn lod_bias<'b>(
         &self,
         chunks: impl Iterator<Item = (&'b Range<usize>, &'b [Paging])> + Clone,
@@ -163,8 +168,8 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// The smallest metric of an instance in any camera of any view, minus its rounding error; `None` if no view may see it.
-/// Nearly visible instances count.
+/// The smallest metric of an instance in all cameras of all views, reduced by its rounding error. `None` if no view may
+/// see the instance. An instance just outside a view counts as visible.
 fn least_metric(views: &[SelectView], object: &LodObject, instance: &SceneInstance) -> Option<f32> {
     let of_view = |view: &SelectView| {
         let (center, radius) = placed_sphere(instance, view.cell);

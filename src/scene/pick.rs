@@ -11,28 +11,30 @@ use crate::scene::object_kind::{Placed, UnitRay};
 use crate::scene::ray::{Hit, Ray, SurfaceHit};
 use crate::shared::lod::instance::{INSTANCE_ALIVE, instance_flags_mask};
 
-/// Relative enlargement of boxes and spheres. It exceeds the `f32` rounding of drawn positions.
+/// Relative enlargement of boxes and spheres. It exceeds the rounding of positions that are drawn in `f32`.
 pub(super) const MARGIN: f64 = 1e-5;
 
 impl Scene {
-    /// The first instance that a ray hits, in full detail and in the pose at the scene's time; `None` if the ray hits none.
-    /// Hidden objects are not hit, and triangles are hit only from their visible sides. A relief is hit on its mesh.
-    /// Cut-out pixels are ignored: the mesh is hit there.
+    /// The first hit of a ray on an instance; `None` if the ray hits nothing. Instances are tested in full detail, in
+    /// the pose at the scene's time. Hidden objects are not hit. Triangles are hit only from their visible sides. For a
+    /// relief, the ray hits the mesh instead of the relief. Cut-out pixels are hit like the rest of the mesh.
     ///
-    /// Driven bones ([`Scene::drive`]) that the host wrote in the last frame ([`Poses::write`](crate::scene::Poses::write))
-    /// keep those values; the other bones have the pose at the scene's time. The host does not know the writes of kernels
-    /// ([`Poses::of`](crate::scene::Poses::of)), so the ray meets those bones where the clip has them.
+    /// The host knows values of driven bones ([`Scene::drive`]) that [`Poses::write`](crate::scene::Poses::write) wrote
+    /// in the last frame, and uses them. All other bones have the pose at the scene's time. The host does not know
+    /// values that the caller's kernels wrote ([`Poses::of`](crate::scene::Poses::of)). Such bones are hit in the pose
+    /// of the clip.
     ///
-    /// The host tests the bounding sphere of each instance. If the ray meets it, the host tests every triangle of a mesh,
-    /// or the terrain cells below the ray. For a character, it poses and skins all vertices, at about a quarter of a
-    /// microsecond per vertex. Nearer spheres come first, and spheres behind the nearest hit are skipped.
+    /// The host first tests the bounding sphere of each instance. If the ray meets the sphere, the host tests every
+    /// triangle of a mesh, or the terrain cells below the ray. A character's vertices are all posed and skinned first,
+    /// which takes about a quarter of a microsecond per vertex. Nearer spheres are tested first. Spheres behind the
+    /// nearest hit are skipped.
     ///
     /// # Errors
-    /// [`InputError`] as [`Ray::validate`].
+    /// [`InputError`] if [`Ray::validate`] refuses the ray.
     ///
     /// # Examples
     ///
-    /// What is under the pointer.
+    /// Prints the instance under the pointer.
     ///
     /// ```no_run
     /// # use relievo::scene::{Camera, Ray, Scene};
@@ -80,7 +82,7 @@ impl Scene {
         Ok(placed_model(&object.instances.all()[instance.index as usize], cell))
     }
 
-    /// Instances whose bounding spheres a ray meets within its limit.
+    /// The instances whose bounding spheres the ray meets within its limit.
     fn spheres_near(&self, ray: &Ray, direction: DVec3) -> Result<Vec<Candidate<'_>>, InputError> {
         let mut near = Vec::new();
         for (object, entry) in self.objects.each().filter(|(_, entry)| entry.is_drawn()) {
@@ -108,14 +110,15 @@ impl Scene {
     }
 }
 
-/// An instance that a ray may hit, at `distance` or further.
+/// An instance whose bounding sphere the ray meets. The ray can hit the instance at `distance` or further.
 struct Candidate<'a> {
     distance: f64,
     instance: InstanceId,
     entry: &'a Object,
 }
 
-/// The distance from the origin to a sphere along a unit direction; 0 inside the sphere.
+/// The distance from the origin to a sphere along a unit direction. It is 0 inside the sphere, and `None` if the sphere
+/// is missed.
 fn distance_to_sphere(center: DVec3, direction: DVec3, radius: f64) -> Option<f64> {
     let along = center.dot(direction);
     let aside = (center - along * direction).length_squared();

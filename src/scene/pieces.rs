@@ -1,5 +1,5 @@
-//! Splitting meshes that exceed a binding of the device. Each level of detail is cut where its triangles begin to use more
-//! vertices than fit, and each piece has vertices of its own.
+//! Splits meshes that exceed a binding of the device. Each level of detail is cut before its triangles use more
+//! vertices or indices than fit into a piece. Each piece has vertices of its own.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use crate::asset::{Influences, Mesh, Model};
 use crate::skinning::character_levels::own_levels;
 use crate::skinning::merged::{Merged, Part};
 
-/// Largest numbers of vertices and indices in a piece.
+/// The largest number of vertices and of indices in a piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Most {
     pub vertices: usize,
@@ -16,19 +16,19 @@ pub(super) struct Most {
 }
 
 impl Most {
-    /// Whether a mesh fits, including all its levels.
+    /// Whether a mesh with all of its levels stays within these numbers.
     pub fn holds(self, mesh: &Mesh) -> bool {
         mesh.vertices() <= self.vertices && indices_of_levels(mesh) <= self.indices
     }
 }
 
-/// Number of indices of a mesh, all levels together.
+/// The number of indices of a mesh, summed over all of its levels.
 pub(super) fn indices_of_levels(mesh: &Mesh) -> usize {
     mesh.indices.len() + mesh.levels.iter().map(|level| level.indices.len()).sum::<usize>()
 }
 
-/// Splits a merged mesh at rest into pieces: meshes without levels, whose parts are drawn at one level each. The triangles
-/// of a level keep their order, and their vertices are identical to the bit.
+/// Splits a merged mesh at rest into pieces. A piece is a mesh without levels, and each of its parts is drawn at one
+/// level of the whole mesh. The triangles of a level keep their order, and vertices stay identical to the bit.
 pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Merged {
     let whole = &merged.model.meshes[index];
     let own = own_levels(whole, &merged.errors);
@@ -68,12 +68,12 @@ pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Merged {
 /// A piece under construction.
 #[derive(Default)]
 struct Piece<'a> {
-    /// Vertex of the whole mesh → vertex of the piece.
+    /// For a vertex of the whole mesh, the vertex of the piece.
     slots: HashMap<u32, u32>,
-    /// Vertex of the piece → vertex of the whole mesh.
+    /// For a vertex of the piece, the vertex of the whole mesh.
     vertices: Vec<u32>,
     indices: Vec<u32>,
-    /// Parts with triangles in the piece, and the end of each part's indices.
+    /// Parts with triangles in the piece, each with the end of its range in `indices`.
     parts: Vec<(&'a Part, u32)>,
 }
 
@@ -98,7 +98,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// Appends it to `all` as a mesh with parts that are drawn only at `level`.
+    /// Appends the piece to `all`, as a mesh whose parts are drawn only at `level`.
     fn finish(self, merged: &Merged, index: usize, level: usize, all: &mut Merged) {
         let (whole, mesh) = (&merged.model.meshes[index], all.model.meshes.len());
         let mut begin = 0;
@@ -129,7 +129,7 @@ impl<'a> Piece<'a> {
         });
     }
 
-    /// The values of its vertices, from those of the whole mesh.
+    /// The values of the piece's vertices, taken from the values of all vertices of the whole mesh.
     fn taken<T: Copy>(&self, of_whole: &[T]) -> Vec<T> {
         self.vertices.iter().map(|vertex| of_whole[*vertex as usize]).collect()
     }

@@ -11,8 +11,8 @@ use crate::shared::lod::instance::CELL_SIZE;
 /// An instance's transform into the world: position, rotation and scale. A point of the model is scaled, then rotated, then
 /// translated. The world is right-handed: +X east, +Y up, +Z south.
 ///
-/// The position is a cell and an offset from its corner, so that it stays precise at any distance from the origin. A cell
-/// has an edge of [`Placement::CELL`] world units.
+/// The position consists of a cell and an offset from the cell's corner, so it is precise at any distance from the
+/// origin. A cell is a cube with an edge of [`Placement::CELL`] world units.
 ///
 /// # Examples
 ///
@@ -36,68 +36,69 @@ use crate::shared::lod::instance::CELL_SIZE;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
-    /// The cell to whose corner `offset` is relative.
+    /// Index of the cell along x, y and z. `offset` is relative to the corner of this cell.
     pub cell: [i32; 3],
-    /// The position in world units, relative to the cell's corner. It may lie outside the cell.
+    /// The position in world units, relative to the cell's corner. The position may lie outside the cell.
     pub offset: Vec3,
-    /// The rotation from the model's axes to the world's. It need not have length 1.
+    /// The rotation from the model's axes to the world's axes. The quaternion need not have length 1.
     pub turn: Quat,
-    /// World units per unit of the model along each of the model's own axes, applied before the rotation. Negative factors
-    /// mirror.
+    /// World units per unit of the model, for each axis of the model. The scale is applied before the rotation. A
+    /// negative factor mirrors.
     pub scale: Vec3,
 }
 
 impl Default for Placement {
-    /// At the origin, neither turned nor scaled.
+    /// A placement at the world's origin, without rotation and with scale 1.
     fn default() -> Self {
         Self { cell: [0; 3], offset: Vec3::ZERO, turn: Quat::IDENTITY, scale: Vec3::ONE }
     }
 }
 
 impl Placement {
-    /// The edge of a cell in world units.
+    /// Length of a cell's edge in world units.
     pub const CELL: f32 = CELL_SIZE;
 
-    /// At a position in world coordinates, as precise as `f32`, neither turned nor scaled.
+    /// A placement at a position in world coordinates, without rotation and with scale 1. The position has the
+    /// precision of `f32`.
     pub fn at(position: impl Into<Vec3>) -> Self {
         Self { offset: position.into(), ..Self::default() }
     }
 
-    /// At a position in world coordinates, neither turned nor scaled. A position beyond ±549,755,813,888 (2³¹ cells) is
-    /// refused where the placement is used.
+    /// A placement at a position in world coordinates, without rotation and with scale 1. Functions that use the
+    /// placement refuse positions beyond ±549,755,813,888 (2³¹ cells).
     pub fn at_world(position: impl Into<DVec3>) -> Self {
         let position = position.into();
         let edge = f64::from(Self::CELL);
-        // The cast saturates.
+        // The cast to `i32` saturates beyond the last cell.
         let cell = (position / edge).floor().to_array().map(|cell| cell as i32);
         Self { cell, offset: (position - Self::corner(cell)).as_vec3(), ..Self::default() }
     }
 
-    /// The corner of a cell in world coordinates: its lowest x, y and z.
+    /// World coordinates of a cell's corner with the lowest x, y and z.
     pub fn corner(cell: [i32; 3]) -> DVec3 {
         DVec3::from(cell.map(f64::from)) * f64::from(Self::CELL)
     }
 
-    /// The same placement, but with a rotation about the vertical axis by `angle` radians. Positive angles turn
-    /// counter-clockwise seen from above: the side that faces +Z at 0 faces +X at π/2.
+    /// The same placement with another rotation: by `angle` radians about the vertical axis. Positive angles turn
+    /// counter-clockwise seen from above. A side that faces +Z at angle 0 faces +X at angle π/2.
     #[must_use]
     pub fn turned(self, angle: f32) -> Self {
         Self { turn: Quat::from_rotation_y(angle), ..self }
     }
 
-    /// The same placement, but with one scale factor for all axes, in world units per unit of the model.
+    /// The same placement with another scale: one factor for all axes, in world units per unit of the model.
     #[must_use]
     pub fn scaled(self, scale: f32) -> Self {
         Self { scale: Vec3::splat(scale), ..self }
     }
 
-    /// The placement after a motion in model space, such as [`Scene::root_motion`](crate::scene::Scene::root_motion): this
-    /// placement times the motion, whose own scale is ignored. It is exact if the scale has the same size along all axes,
-    /// mirrored or not.
+    /// The placement after a motion in model space, such as [`Scene::root_motion`](crate::scene::Scene::root_motion):
+    /// this placement times the motion. The motion's scale is ignored. The result is exact if the scale of the
+    /// placement has the same size along all axes, mirrored or not.
     #[must_use]
     pub fn moved_by(self, motion: &Transform) -> Self {
         let ahead = self.turn * (self.scale * Vec3::from(motion.translation));
-        // A mirrored model turns the other way.
+        // In a mirrored model, the rotation runs in the opposite direction.
         let sides = self.scale.signum();
         let [x, y, z, w] = motion.rotation;
         let axis = sides * Vec3::new(x, y, z) * sides.element_product();
@@ -110,10 +111,10 @@ impl Placement {
         Self::corner(self.cell) + self.offset.as_dvec3()
     }
 
-    /// The same placement with the position inside its cell and a unit rotation.
+    /// Checks the placement. Returns the same placement with the position inside its cell and a unit rotation.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, a rotation without direction, a scale of 0 along all axes, and a
+    /// [`InputError`] for values that are not finite, a rotation of length 0, a scale of 0 along all axes, and a
     /// position beyond ±549,755,813,888 (2³¹ cells) along an axis of the world.
     pub fn checked(self) -> Result<Self, InputError> {
         if self.offset.is_nan() {
@@ -126,7 +127,7 @@ impl Placement {
                 "must be finite, and not 0 along all axes",
             ));
         }
-        // An infinite length has no reciprocal.
+        // An infinite quaternion has no direction.
         let length = self.turn.length();
         if !(length > 1e-6 && length.is_finite()) {
             return Err(InputError::new("placement.turn", self.turn, "must be finite, and not 0"));
@@ -144,13 +145,13 @@ impl Placement {
     }
 }
 
-/// Checks that a position lies in a cell. `path` names its world coordinates in errors.
+/// Checks that a position lies in one of the world's cells. `path` names the position in errors.
 ///
 /// # Errors
 /// [`InputError`] for a coordinate that is NaN or beyond the last cell.
 pub(super) fn check_world(path: &str, cell: [i32; 3], offset: Vec3) -> Result<(), InputError> {
     let world = Placement::corner(cell) + offset.as_dvec3();
-    // Bounds of the world along an axis: the corners of the first and last cells.
+    // Bounds of the world along an axis: the lower edge of the first cell, and the upper edge of the last cell.
     let [first, end] = [i32::MIN, i32::MAX].map(|cell| Placement::corner([cell; 3]).x);
     let end = end + f64::from(Placement::CELL);
     match world.to_array().iter().position(|value| !(first..end).contains(value)) {
@@ -158,7 +159,8 @@ pub(super) fn check_world(path: &str, cell: [i32; 3], offset: Vec3) -> Result<()
         Some(axis) => {
             let value = match world[axis].is_infinite() {
                 true => "beyond ±3.4e38, the range of f32".to_owned(),
-                // The offset was rounded to f32; its shortest decimal form is what the caller wrote.
+                // The offset was rounded to `f32`. The shortest decimal form of that `f32` is the number that the
+                // caller wrote.
                 false => (world[axis] as f32).to_string(),
             };
             let bound = format!("must be a number in {first}..{end}, the world's coordinates");
@@ -167,15 +169,15 @@ pub(super) fn check_world(path: &str, cell: [i32; 3], offset: Vec3) -> Result<()
     }
 }
 
-/// A clip for a character to play.
+/// A clip that a character plays, with its start, rate and wrap mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Play<'a> {
     /// The clip's name, or its index in the model in digits, counted from 0. A clip without a name in its file is called
     /// `animation_` followed by its index.
     pub clip: &'a str,
-    /// The scene time, in seconds, at which the clip starts. A start in the past means that the clip is already under way.
+    /// The scene time at which the clip starts, in seconds. A clip with a start in the past is already under way.
     pub start: f64,
-    /// Seconds of the clip per second of scene time; negative plays it backwards.
+    /// Seconds of the clip per second of scene time. A negative rate plays the clip backwards.
     pub rate: f32,
     /// Behaviour at the end of the clip.
     pub wrap: Wrap,
@@ -188,7 +190,7 @@ impl<'a> Play<'a> {
         Self { clip, start: 0.0, rate: 1.0, wrap: Wrap::Loop }
     }
 
-    /// Checks `start` and `rate`.
+    /// Checks that `start` and `rate` are finite and within ±1e9.
     ///
     /// # Errors
     /// [`InputError`] that names the invalid field.
@@ -198,7 +200,7 @@ impl<'a> Play<'a> {
     }
 }
 
-/// The clip that a character plays, and the position in it.
+/// The clip that a character plays, and the present time in that clip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClipTime {
     /// Index of the clip in the model.
@@ -223,7 +225,7 @@ mod tests {
         assert_eq!(turned.turn, Quat::from_xyzw(0.0, 0.6, 0.0, 0.8));
     }
 
-    /// Moving a point in model space and then placing it equals placing it with the moved placement.
+    /// Moving a point in model space and then placing the point gives the same result as the moved placement.
     #[test]
     fn placements_move_by_motions_of_the_model() {
         let rotation = Quat::from_rotation_y(0.6) * Quat::from_rotation_x(0.3);

@@ -1,43 +1,47 @@
-//! How fine a view is, and how its allowed displacement is divided.
+//! The quality of a view, and how its allowed displacement is divided.
 
 use crate::InputError;
 
-/// How fine a view is.
+/// The quality of a view: its largest error in pixels, and its limits of triangles and time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quality {
-    /// The largest error on the screen, in pixels of the camera's viewport: no point of an instance is drawn further from
-    /// its place. At least 0; 0 shows everything in full detail. The limit becomes an allowed displacement in the world per
-    /// instance, which [`ErrorBudget`] divides among levels of detail, bones and influences. Shading, textures and shadow
-    /// edges are not bounded.
+    /// The largest error on the screen, in pixels of the camera's viewport, at least 0. No point of an instance is
+    /// drawn further from its exact position. 0 shows everything in full detail.
     ///
-    /// When the device has no memory left for the vertices of a character's visible instances, its levels are coarser than
-    /// this; [`Scene::lod_bias`](super::Scene::lod_bias) returns the factor.
+    /// For each instance, this limit becomes an allowed displacement in the world. [`ErrorBudget`] divides that
+    /// displacement among levels of detail, bones and influences. Shading, textures and shadow edges are not bounded.
+    ///
+    /// If the device has no memory left for the vertices of a character's visible instances, the character's error
+    /// exceeds this limit. [`Scene::lod_bias`](super::Scene::lod_bias) returns the factor.
     pub pixels: f32,
-    /// The largest number of triangles that the view draws in one layer, back faces and both levels of fades included; at
-    /// least 1. `None`, the default: no limit.
+    /// The largest number of triangles that the view draws in one layer, at least 1. Back faces and both levels of
+    /// fades count. `None`, the default, means no limit.
     ///
-    /// In each frame the device finds the least factor of the metric of all instances at which they fit: the levels of
-    /// detail are those of instances further away, or those of more [`Quality::pixels`]. The error then is within
-    /// `pixels` times this factor ([`ViewStatistics::pixels`](super::ViewStatistics::pixels)). The factor grows at once, and
-    /// falls within half a second. Objects with a rank are coarsened in the order of their ranks
-    /// ([`LevelOfDetail::rank`](super::LevelOfDetail::rank)). If the coarsest levels do not fit,
+    /// In each frame, the device finds the smallest factor at which the triangles fit the limit. The factor multiplies
+    /// the metric by which each instance's level of detail is chosen. So instances get the levels that they would have
+    /// further away, or with a larger [`Quality::pixels`]. The error is then at most `pixels` times this factor
+    /// ([`ViewStatistics::pixels`](super::ViewStatistics::pixels)). The factor rises at once, and falls within half a
+    /// second.
+    ///
+    /// Objects with a rank become coarser in the order of their ranks
+    /// ([`LevelOfDetail::rank`](super::LevelOfDetail::rank)). If even the coarsest levels exceed the limit,
     /// [`BudgetStatistics::is_missed`](super::BudgetStatistics::is_missed) is true.
     pub triangles: Option<u32>,
-    /// The time that a frame may take, in milliseconds, above 0. `None`, the default: no limit. The view then draws fewer
-    /// triangles, at most `triangles`, until the times that the program reports ([`View::frame_took`](super::View::frame_took))
-    /// are within it.
+    /// The time that a frame may take, in milliseconds, above 0. `None`, the default, means no limit. The program
+    /// reports the times of its frames ([`View::frame_took`](super::View::frame_took)). If they exceed the limit, the
+    /// view draws fewer triangles. `triangles` remains an upper bound.
     pub milliseconds: Option<f32>,
 }
 
 impl Default for Quality {
-    /// One pixel, without a budget.
+    /// An error of at most one pixel, without limits of triangles and time.
     fn default() -> Self {
         Self { pixels: 1.0, triangles: None, milliseconds: None }
     }
 }
 
 impl Quality {
-    /// A quality within so many pixels, without a budget.
+    /// An error of at most `pixels` pixels, without limits of triangles and time.
     pub fn pixels(pixels: f32) -> Self {
         Self { pixels, ..Self::default() }
     }
@@ -45,8 +49,8 @@ impl Quality {
     /// Checks the fields.
     ///
     /// # Errors
-    /// [`InputError`] for `pixels` that is negative or not finite, for 0 `triangles`, and for `milliseconds` that are not
-    /// above 0 and finite.
+    /// [`InputError`] for `pixels` that is negative or not finite, for 0 `triangles`, and for `milliseconds` that is
+    /// not finite or not above 0.
     pub fn validate(&self) -> Result<(), InputError> {
         if !(0.0..f32::INFINITY).contains(&self.pixels) {
             return Err(InputError::new("quality.pixels", self.pixels, "must be finite, and not negative"));
@@ -63,14 +67,14 @@ impl Quality {
     }
 }
 
-/// Fraction of the allowed displacement that each source of error may use. The fractions add up to at most 1.
+/// Fractions of the allowed displacement, one for each source of error. The fractions add up to at most 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorBudget {
-    /// Levels of detail of characters' meshes, 0 to 1. Static meshes use the whole displacement.
+    /// Fraction for levels of detail of characters' meshes, 0 to 1. Static meshes use the whole displacement.
     pub mesh: f32,
-    /// Bones that keep an older pose, 0 to 1.
+    /// Fraction for bones that keep an older pose, 0 to 1.
     pub bones: f32,
-    /// Omitted influences, 0 to 1.
+    /// Fraction for bone influences that skinning omits, 0 to 1.
     pub influences: f32,
 }
 
@@ -82,7 +86,7 @@ impl Default for ErrorBudget {
 }
 
 impl ErrorBudget {
-    /// Checks the fractions.
+    /// Checks that each fraction is 0 to 1, and that their sum is at most 1.
     ///
     /// # Errors
     /// [`InputError`] that names the invalid field.

@@ -1,4 +1,4 @@
-//! Queries of a scene's instances and, for measurements, of what a view draws.
+//! Queries about a scene's instances and, for measurements, about the instances that a view draws.
 
 use glam::DAffine3;
 
@@ -12,15 +12,15 @@ use crate::shared::lod::instance::SceneInstance;
 pub use drawn::{DrawnAs, DrawnInstance};
 
 impl Scene {
-    /// All instances of an object, in the order of views' lists. The instances of terrain are its patches: they can be
-    /// hidden ([`Scene::set_visibility_mask`]), but not moved, removed or tinted.
+    /// All instances of an object, in the order in which views list them. The instances of terrain are its patches.
+    /// Patches can be hidden ([`Scene::set_visibility_mask`]), but not moved, removed or tinted.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     ///
     /// # Examples
     ///
-    /// All patches of a terrain but the first are hidden.
+    /// Hides all patches of a terrain except the first.
     ///
     /// ```no_run
     /// # use relievo::scene::{ObjectId, Scene};
@@ -36,8 +36,8 @@ impl Scene {
         Ok(all.map(|[index, generation]| InstanceId { object, index, generation }).collect())
     }
 
-    /// The placement of an instance. For an attached instance, it is the placement that it takes when it is detached;
-    /// [`Scene::world_from_model`] returns its present transform.
+    /// The placement of an instance. For an attached instance, this is the placement that detaching restores;
+    /// [`Scene::world_from_model`] returns the present transform.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -52,13 +52,12 @@ impl Scene {
         Ok(Placement { cell, offset: offset.into(), turn, scale: scale.into() })
     }
 
-    /// The transform from an instance's model space to world coordinates, in world units. For an attached mesh
-    /// ([`Scene::attach`]), it follows the bone in the pose at the scene's time; the host samples the character for that.
-    /// Bones written in the last frame count as in [`Scene::pick`]. For every other instance, it equals
-    /// [`Scene::placement`].
+    /// The transform from an instance's model space to world coordinates, in world units. An attached mesh
+    /// ([`Scene::attach`]) follows its bone in the pose at the scene's time, which the host samples. Bones written in
+    /// the last frame count as in [`Scene::pick`]. For every other instance, the transform equals [`Scene::placement`].
     ///
-    /// The result is not a [`Placement`], because bones may shear a mesh. Without shear, `to_scale_rotation_translation()`
-    /// of the result gives one.
+    /// The result is not a [`Placement`], because bones may shear a mesh. Without shear,
+    /// `to_scale_rotation_translation()` splits the result into the parts of a placement.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -79,14 +78,15 @@ impl Scene {
         Ok(DAffine3::from_translation(Placement::corner(cell)) * self.placed(instance, cell)?)
     }
 
-    /// The clip that an instance plays, and the position in it at the scene's time; `None` if it is not a character.
+    /// The clip that an instance plays, and the time in that clip at the scene's time. `None` if the instance is not a
+    /// character.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     ///
     /// # Examples
     ///
-    /// A jump that has ended.
+    /// Lets a fighter walk after a jump has ended.
     ///
     /// ```no_run
     /// # use relievo::scene::{InstanceId, Play, Scene};
@@ -122,19 +122,20 @@ mod drawn {
     use crate::shared::lod::object::{MORPH_STEPS, list_entry_instance, list_entry_steps};
     use crate::skinning::vertex::Vertex;
 
-    /// An instance that a view may show, as drawn in the view's last frame.
+    /// An instance that a view may show, and how the view drew it in its last frame.
     #[derive(Debug, Clone, Copy)]
     pub struct DrawnInstance {
         /// The instance.
         pub instance: InstanceId,
-        /// How it was drawn; `None` if it was not drawn.
+        /// How the view drew the instance; `None` if the view did not draw it.
         pub drawn: Option<DrawnAs>,
     }
 
     /// How a view drew an instance.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct DrawnAs {
-        /// Index of its list: 2 · level + mirrored. Of an instance that fades, the finer level's.
+        /// Index of the list that contains the instance: 2 · level, plus 1 if it is mirrored. A fading instance has the
+        /// list of the finer level.
         pub list: u32,
         /// Progress of the geomorph to the next coarser level, 0 to 1.
         pub way: f64,
@@ -142,7 +143,7 @@ mod drawn {
         pub placement: Affine,
     }
 
-    /// For the laboratory, which measures drawn frames.
+    /// Functions for `relievo-lab`, which measures drawn frames.
     #[doc(hidden)]
     impl Scene {
         /// Whether an object is a character.
@@ -150,8 +151,8 @@ mod drawn {
             Ok(self.object_at(object)?.character().is_some())
         }
 
-        /// The instances of an object that a view may show, as drawn in its last frame, which must have been submitted.
-        /// Waits for the device.
+        /// The instances of an object that a view may show, as drawn in the view's last frame. Submit that frame before
+        /// this call, which waits for the device.
         pub fn drawn_instances(&self, view: &View, object: ObjectId) -> Result<Vec<DrawnInstance>, Error> {
             let entry = self.object_at(object)?;
             let buffers = self.lists_of(view)?;
@@ -190,8 +191,8 @@ mod drawn {
             lists.ok_or_else(|| InputError::new("view", "not recorded", bound))
         }
 
-        /// The triangles that a view draws for one list of an object, per merged mesh. Corners are vertex slots. Waits for
-        /// the device.
+        /// The triangles that a view draws for one list of an object, for each merged mesh. Corners are indices of
+        /// vertices in the order of the mesh's clusters. The call waits for the device.
         pub fn drawn_triangles(
             &self,
             view: &View,
@@ -215,10 +216,11 @@ mod drawn {
             Ok(all)
         }
 
-        /// The drawn vertices of an object's instances, per merged mesh. Waits for the device.
+        /// The drawn vertices of an object's instances, for each merged mesh. The call waits for the device.
         ///
-        /// - Character: per instance, the vertices of its pages in the mesh's own order; `None` without a page.
-        /// - Mesh: the vertices shared by all instances, once, slot by slot.
+        /// - Character: for each instance, its skinned vertices in the mesh's own order. A vertex without a page is
+        ///   `None`.
+        /// - Mesh: the vertices that all instances share, once, in the order of the mesh's clusters.
         pub fn drawn_vertices(
             &self,
             object: ObjectId,

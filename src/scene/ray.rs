@@ -14,28 +14,29 @@ use crate::skinning::merged::Merged;
 /// A ray in the world, for [`Scene::pick`](crate::scene::Scene::pick).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// The cell whose corner `offset` is relative to; see [`Placement`].
+    /// Index of a cell. `offset` is relative to the corner of this cell; see [`Placement`].
     pub cell: [i32; 3],
-    /// The start of the ray in world units, relative to the cell's corner. With cell (0, 0, 0) these are world coordinates.
+    /// The start of the ray in world units, relative to the cell's corner. For cell (0, 0, 0), these are world
+    /// coordinates.
     pub offset: DVec3,
-    /// The direction, of any length but 0.
+    /// The direction of the ray, of any length except 0.
     pub direction: DVec3,
     /// The largest distance of a hit, in world units.
     pub limit: f64,
-    /// Visibility mask: only instances whose mask shares a bit with it are hit.
+    /// Visibility mask. The ray hits only instances whose own mask shares a bit with this mask.
     pub mask: u16,
 }
 
 /// The first hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// The instance; for terrain, the patch.
+    /// The instance that was hit. For terrain, this is the patch.
     pub instance: InstanceId,
-    /// Its object.
+    /// The object of the instance.
     pub object: ObjectId,
-    /// The distance from the start of the ray, in world units.
+    /// The distance from the start of the ray to the hit point, in world units.
     pub distance: f64,
-    /// The ray's cell, whose corner `offset` is relative to.
+    /// The cell of the ray. `offset` is relative to the corner of this cell.
     pub cell: [i32; 3],
     /// The hit point in world units, relative to the cell's corner.
     pub offset: DVec3,
@@ -51,7 +52,8 @@ impl Hit {
 }
 
 impl Ray {
-    /// A ray from a position in world coordinates, without a limit, that hits instances of any mask except 0.
+    /// A ray from a position in world coordinates, without a limit of distance. It hits instances with any visibility
+    /// mask except 0.
     pub fn new(position: impl Into<DVec3>, direction: impl Into<DVec3>) -> Self {
         let (offset, direction) = (position.into(), direction.into());
         Self { cell: [0; 3], offset, direction, limit: f64::INFINITY, mask: u16::MAX }
@@ -62,11 +64,11 @@ impl Ray {
         Placement::corner(self.cell) + self.offset
     }
 
-    /// The ray from a camera's near plane through a point of its picture, in pixels from the left and the top. The middle
-    /// of the first pixel is (0.5, 0.5).
+    /// The ray from a camera's near plane through a point of the camera's picture. The point is in pixels from the left
+    /// and the top edge; the middle of the first pixel is (0.5, 0.5).
     ///
     /// # Errors
-    /// [`InputError`] as [`Camera::validate`], and for a point that is not finite.
+    /// [`InputError`] if [`Camera::validate`] refuses the camera, and for a point that is not finite.
     pub fn through(camera: &Camera, [x, y]: [f32; 2]) -> Result<Self, InputError> {
         camera.validate()?;
         for (path, value) in [("pixel[0]", x), ("pixel[1]", y)] {
@@ -83,7 +85,7 @@ impl Ray {
         Ok(Self { cell: camera.cell, ..Self::new(near, point(0.5) - near) })
     }
 
-    /// Checks the ray.
+    /// Checks the ray's fields.
     ///
     /// # Errors
     /// [`InputError`] for a position or a direction that is not finite, a direction of length 0, and a negative limit.
@@ -110,11 +112,11 @@ impl Ray {
 #[derive(Debug, Clone)]
 pub(super) struct Surface<'a> {
     positions: Cow<'a, [[f32; 3]]>,
-    /// Runs of triangle indices, each with whether both sides are visible.
+    /// Parts of the surface: triangle indices, and whether both sides of the triangles are visible.
     parts: Vec<(&'a [u32], bool)>,
 }
 
-/// A hit of a surface: the distance, and the triangle's normal, of any length.
+/// A hit on a surface: its distance, and the triangle's normal, which may have any length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SurfaceHit {
     pub distance: f64,
@@ -122,7 +124,7 @@ pub(super) struct SurfaceHit {
 }
 
 impl SurfaceHit {
-    /// The nearer of two hits.
+    /// The nearer of two hits; `None` if there is neither.
     pub fn nearer(one: Option<Self>, other: Option<Self>) -> Option<Self> {
         let all = one.into_iter().chain(other);
         all.reduce(|one, other| if other.distance < one.distance { other } else { one })
@@ -130,7 +132,7 @@ impl SurfaceHit {
 }
 
 impl<'a> Surface<'a> {
-    /// Triangles that are all double-sided, or all single-sided.
+    /// A surface whose triangles are either all double-sided or all single-sided.
     pub fn new(positions: impl Into<Cow<'a, [[f32; 3]]>>, indices: &'a [u32], double_sided: bool) -> Self {
         Self { positions: positions.into(), parts: vec![(indices, double_sided)] }
     }
@@ -144,14 +146,14 @@ impl<'a> Surface<'a> {
         Self { positions: positions.into(), parts }
     }
 
-    /// The corners of a box around the surface, along the axes of the target space of `placed`.
+    /// The lowest and highest corner of a box around the surface after the transform `placed`.
     pub fn bounds(&self, placed: DAffine3) -> [DVec3; 2] {
         let corners = self.positions.iter().map(|corner| placed.transform_point3(point(*corner)));
         corners.fold([DVec3::MAX, DVec3::MIN], |[low, high], corner| [low.min(corner), high.max(corner)])
     }
 
-    /// The nearest hit of a ray within `limit`, in the target space of `placed`. The direction must have length 1.
-    /// Single-sided triangles are hit only from their visible side.
+    /// The nearest hit of a ray on the surface after the transform `placed`, at a distance of at most `limit`. The
+    /// direction must have length 1. Single-sided triangles are hit only from their visible side.
     pub fn hit(&self, placed: DAffine3, [at, direction]: [DVec3; 2], limit: f64) -> Option<SurfaceHit> {
         let corners: Vec<DVec3> =
             self.positions.iter().map(|corner| placed.transform_point3(point(*corner)) - at).collect();
@@ -219,7 +221,7 @@ mod tests {
         assert!((middle.world() - eye.as_dvec3()).length() < 0.501);
         let corner = Ray::through(&camera, [0.0, 0.0]).expect("a pixel");
         let up = ahead.cross(DVec3::Y).normalize().cross(ahead);
-        // Half the field of view upwards, and twice as far sideways.
+        // The corner is half the field of view above the middle, and twice as far to the side.
         let rise = corner.direction.normalize().dot(up) / corner.direction.normalize().dot(ahead);
         assert!((rise - 0.45_f64.tan()).abs() < 1e-5, "{rise}");
         assert_eq!(Ray::through(&camera, [f32::NAN, 0.0]).expect_err("refused").path, "pixel[0]");

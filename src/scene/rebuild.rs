@@ -1,4 +1,4 @@
-//! Rebuilding a scene on another device, after its own was lost.
+//! Rebuilds a scene on another device, after the scene's own device was lost.
 
 use crate::Error;
 use crate::gpu::{Gpu, Staged, StagingRing};
@@ -7,27 +7,30 @@ use crate::scene::object_kind::OnDevice;
 use crate::scene::statistics::StageTimer;
 use crate::scene::{FRAMES_IN_FLIGHT, Passes, Scene};
 
-/// A type with device resources that can be rebuilt after the scene's device was lost: a [`View`](crate::scene::View), a
+/// A type whose device resources can be recreated after the scene's device was lost: a [`View`](crate::scene::View), a
 /// [`Renderer`](crate::render::Renderer), a [`SunShadow`](crate::render::SunShadow), or a type of the caller's.
 pub trait Rebuild {
     /// Recreates all device resources on the new device of a rebuilt scene.
     ///
     /// # Errors
-    /// Those of the type's own `rebuild`.
+    /// The errors of the type's own function `rebuild`.
     fn rebuild_for(&mut self, scene: &Scene) -> Result<(), Error>;
 }
 
 impl Scene {
-    /// Rebuilds the scene on another device ([`Scene::rebuild`]), then its views, shadows and renderers, in their order.
-    /// The next use of a part that was left out is refused, with the name of the function that rebuilds it. A renderer with
-    /// the caller's bind group layout needs a layout of the new device. Leave it out here, and call
-    /// [`Renderer::rebuild_with_layout`].
+    /// Rebuilds the scene on another device ([`Scene::rebuild`]), then the views, shadows and renderers in `parts`, one
+    /// after the other. The next use of a part that was left out returns an error, which names the function that
+    /// rebuilds this part.
+    ///
+    /// A renderer with the caller's bind group layout needs a layout of the new device. Leave such a renderer out here,
+    /// and call [`Renderer::rebuild_with_layout`].
     ///
     /// [`Renderer::rebuild_with_layout`]: crate::render::Renderer::rebuild_with_layout
     ///
     /// # Errors
-    /// As for [`Scene::rebuild`]; nothing has changed then. Otherwise, the first error of a part, with a path that starts
-    /// with `parts[0]`, …: the scene and the parts before it are then rebuilt, the others are not.
+    /// If [`Scene::rebuild`] fails, its error; nothing has changed then. Otherwise, the first error of a part, with a
+    /// path that starts with `parts[0]`, `parts[1]` and so on. The scene and the parts before the failed part are then
+    /// rebuilt; all other parts are not.
     ///
     /// # Examples
     ///
@@ -52,7 +55,8 @@ impl Scene {
         self.rebuild_parts(parts)
     }
 
-    /// Like `Scene::rebuild_all`, but completes once the device has reported its errors; see [`Gpu::wait_async`].
+    /// Like `Scene::rebuild_all`, but the future completes once the device has reported its errors; see
+    /// [`Gpu::wait_async`].
     ///
     /// # Errors
     /// As for `Scene::rebuild_all`.
@@ -76,31 +80,32 @@ impl Scene {
         Ok(())
     }
 
-    /// Recreates the scene's device resources on another device, after its own was lost. Handles stay valid. Placements,
-    /// clips, times, attachments and all other settings are kept. The next frame is that of a [refreshed](Scene::refresh)
-    /// scene. The scene stays unchanged if the rebuild fails.
+    /// Recreates the scene's device resources on another device, after the scene's own device was lost. Handles stay
+    /// valid. Placements, clips, times, attachments and all other settings are kept. The next frame starts afresh, as
+    /// after [`Scene::refresh`]. If the rebuild fails, the scene stays unchanged.
     ///
-    /// Views, renderers and shadows need [`View::rebuild`](crate::scene::View::rebuild),
+    /// Views, renderers and shadows must be rebuilt, too: with [`View::rebuild`](crate::scene::View::rebuild),
     /// [`Renderer::rebuild`](crate::render::Renderer::rebuild) and
-    /// [`SunShadow::rebuild`](crate::render::SunShadow::rebuild); [`Scene::rebuild_all`] calls them all.
+    /// [`SunShadow::rebuild`](crate::render::SunShadow::rebuild). [`Scene::rebuild_all`] calls all of these functions.
     ///
     /// Data in the caller's buffers and textures cannot be restored. Before the call, remove terrain made from fields
     /// ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields)) and reliefs made from textures
     /// ([`Relief::of_maps`](crate::scene::Relief::of_maps)).
     ///
-    /// The scene keeps its sources on the host: meshes with their images, clips, and the recipes of terrain, whose patches
-    /// are generated again. The rebuild takes as long as adding the objects did, except for computations that characters
-    /// need only once (bounds of motion). It compiles all shaders that the new device has not compiled yet.
+    /// The scene keeps its sources on the host: meshes with their images, clips, and recipes of terrain. Terrain is
+    /// generated again. The rebuild takes as long as adding the objects, except for computations that characters need
+    /// only once (bounds of motion). All shaders that the new device has not compiled yet are compiled.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for terrain and reliefs in the caller's buffers; [`crate::gpu::GpuError`].
+    /// [`InputError`](crate::InputError) for terrain and reliefs whose data is in the caller's buffers or textures;
+    /// [`crate::gpu::GpuError`].
     #[cfg(not(target_arch = "wasm32"))]
     pub fn rebuild(&mut self, gpu: &Gpu) -> Result<(), Error> {
         gpu.block_on(self.rebuild_async(gpu))
     }
 
-    /// Like `Scene::rebuild`, but completes once the device has generated terrain and reported its errors; see
-    /// [`Gpu::wait_async`].
+    /// Like `Scene::rebuild`, but the future completes once the device has generated terrain and reported its errors;
+    /// see [`Gpu::wait_async`].
     ///
     /// # Errors
     /// As for `Scene::rebuild`.
@@ -114,7 +119,7 @@ impl Scene {
             objects.push(object.on(gpu, &layouts).await?);
         }
         gpu.check_async().await?;
-        // From here on nothing fails.
+        // From here on, no step can fail, so the scene may be changed.
         for (object, on_device) in self.objects.iter_mut().zip(objects) {
             object.adopt(on_device);
         }

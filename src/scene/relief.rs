@@ -1,4 +1,4 @@
-//! Relief-mapped meshes in a scene: walls, cobbles, anything whose depth is a height map.
+//! Relief-mapped meshes in a scene: walls, cobbles, and other surfaces whose depth is given by a height map.
 
 use glam::{Vec2, Vec3};
 
@@ -27,20 +27,21 @@ use crate::{Error, InputError};
 
 /// A relief-mapped mesh, for [`Scene::add_relief`](crate::scene::Scene::add_relief).
 ///
-/// It has no levels of detail, so it is drawn in full at any distance. The error of a level bounds only the displacement of
-/// the surface. It does not bound texture coordinates, along which rays march through the relief. Use a mesh with few
-/// triangles; the relief itself has the detail.
+/// A relief has no levels of detail, so its mesh is drawn in full at any distance. The error of a level would bound
+/// only the displacement of the surface, but not the texture coordinates along which rays march through the relief. Use
+/// a mesh with few triangles, because the maps contain the detail.
 #[derive(Debug, Clone)]
 pub struct Relief {
     /// The mesh, in model space.
     pub mesh: SurfaceMesh,
     /// Heights, colours and normals.
     pub maps: ReliefSource,
-    /// Method, shadows and silhouette. With [`ReliefSource::Textures`], the method must be that of the textures.
+    /// Method, shadows and silhouette. With [`ReliefSource::Textures`], the method must be the one that the textures
+    /// were made for.
     pub options: ReliefOptions,
-    /// Depth, plane and width of shadows. Its light is not used, because a scene has one light.
+    /// Depth, plane and width of shadows. The material's light is ignored, because a scene has one light.
     pub material: ReliefMaterial,
-    /// Ray marching, and the address mode beyond the edges of the maps.
+    /// Settings of the ray march, and the address mode beyond the edges of the maps.
     pub march: March,
     /// Whether both sides of the mesh are visible.
     pub double_sided: bool,
@@ -49,19 +50,21 @@ pub struct Relief {
 /// The maps of a [`Relief`].
 #[derive(Debug, Clone)]
 pub enum ReliefSource {
-    /// Images on the host. Each object uploads them, and computes the acceleration map of its method.
+    /// Images on the host. When the relief is added, they are uploaded, and the acceleration map of the method is
+    /// computed.
     Images {
         /// The heights.
         heights: HeightMap,
-        /// The colours, sRGB.
+        /// The colours in sRGB.
         albedo: image::RgbaImage,
         /// Normals in tangent space, if [`ReliefOptions::normal_map`] asks for them.
         normals: Option<image::RgbaImage>,
     },
-    /// Textures on the device, shared by any number of objects and by the caller. Use them for heights computed on the
-    /// device, or for colours in linear half floats ([`ColorTexture::linear`]), which no driver decodes from sRGB.
+    /// Textures on the device, which several objects and the caller may share. Use them for heights that are computed
+    /// on the device, or for colours in linear half floats ([`ColorTexture::linear`]). No driver decodes such colours
+    /// from sRGB.
     Textures {
-        /// The heights and the acceleration map of a method.
+        /// The heights, and the acceleration map of a method.
         textures: Box<SurfaceTextures>,
         /// The colours.
         albedo: Box<ColorTexture>,
@@ -71,21 +74,22 @@ pub enum ReliefSource {
 }
 
 impl Relief {
-    /// An upright square wall, facing +Z and centred at the model's origin, with an edge of one unit of the model. It shows
-    /// the maps `tiles` times along each edge, their top edge upwards. Its back is not drawn unless `double_sided` is set.
-    /// Everything else is as in [`Relief::new`].
+    /// An upright square wall that faces +Z and is centred at the model's origin. Its edge is one unit of the model.
+    /// The maps repeat `tiles` times along each edge, with their top edge upwards. The back of the wall is drawn only
+    /// if `double_sided` is set. All other fields are those of [`Relief::new`].
     pub fn wall(tiles: f32, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self::new(SurfaceMesh::square(tiles), heights, albedo)
     }
 
-    /// A mesh with repeating heights and colours. It is drawn by the exact quadtree method, and writes the depth of the
-    /// relief. The relief touches the mesh where heights are largest, and lies behind it elsewhere.
+    /// A relief on a mesh, with repeating heights and colours. It is drawn by the exact quadtree method, and writes the
+    /// depth of the relief. The relief touches the mesh where heights are largest, and lies behind the mesh elsewhere.
     pub fn new(mesh: SurfaceMesh, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self::of(mesh, ReliefSource::Images { heights, albedo, normals: None })
     }
 
-    /// A mesh that shares the caller's textures. It is drawn by the method for which the textures were made, with normals
-    /// from the heights, and writes the depth of the relief. The address mode is that of the textures.
+    /// A relief on a mesh that shares the caller's textures. It is drawn by the method for which the textures were
+    /// made, with normals from the heights, and writes the depth of the relief. The address mode is that of the
+    /// textures.
     pub fn of_maps(mesh: SurfaceMesh, maps: ReliefMaps<'_>) -> Self {
         let ReliefMaps { textures, albedo, normals } = maps;
         let (method, address) = (textures.method, textures.address);
@@ -111,7 +115,7 @@ impl Relief {
     }
 
     /// The same relief with normals from an image instead of from the heights. `green` is the direction of the image's
-    /// green channel. Textures on the device stay as they are.
+    /// green channel. A relief with [`ReliefSource::Textures`] stays unchanged.
     #[must_use]
     pub fn with_normals(mut self, image: image::RgbaImage, green: Green) -> Self {
         if let ReliefSource::Images { normals, .. } = &mut self.maps {
@@ -124,7 +128,7 @@ impl Relief {
     /// Checks that the relief can be made again on another device.
     ///
     /// # Errors
-    /// [`InputError`] for textures, because they were on the lost device.
+    /// [`InputError`] for a relief made from textures, because the textures were on the lost device.
     fn check_can_be_rebuilt(&self) -> Result<(), InputError> {
         match &self.maps {
             ReliefSource::Images { .. } => Ok(()),
@@ -200,7 +204,7 @@ pub(super) fn drawn(
     Ok((sphere, (vec![Box::new(drawable)], draws)))
 }
 
-/// Checks the mesh and the images.
+/// Checks the relief's mesh and images.
 fn check(gpu: &Gpu, Relief { mesh, maps, .. }: &Relief) -> Result<(), InputError> {
     mesh.validate().map_err(|error| error.below("mesh"))?;
     if mesh.indices.is_empty() {
@@ -252,7 +256,7 @@ fn material(gpu: &Gpu, layouts: &SceneLayouts, relief: &Relief) -> Result<Relief
     }
 }
 
-/// Model units per uv unit: the square root of the mesh's total area over its total area in uv.
+/// Length of one uv unit in model units: the square root of the mesh's total area over its total area in uv.
 fn length_of_uv(mesh: &SurfaceMesh) -> Result<f32, InputError> {
     let (mut in_space, mut in_uv) = (0.0, 0.0);
     for triangle in mesh.indices.chunks_exact(3) {

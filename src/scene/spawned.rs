@@ -8,16 +8,16 @@ use crate::scene::placement::{Placement, Play};
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Spawns an instance, visible from the next recording on. A character plays the first clip of its model, from scene
-    /// time 0 on; see [`Scene::play`].
+    /// Spawns an instance, which is visible from the next recording on. An instance of a character plays the first clip
+    /// of its model, from scene time 0 on; see [`Scene::play`].
     ///
-    /// A full object grows to twice its capacity. Growth allocates memory, here and in the next recording, and makes all
-    /// instances of a character be sampled and skinned in full once. Handles stay valid, and no pipeline needs to be
-    /// compiled. Views must be recorded again before they are drawn.
+    /// If the object is full, it grows to twice its capacity. Growth allocates memory, in this call and in the next
+    /// recording. After growth, all instances of a character are sampled and skinned in full once. Handles stay valid,
+    /// and no pipeline needs to be compiled. Views must be recorded again before they are drawn.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, for terrain, whose instances are its patches, and as
-    /// [`Placement::checked`]; [`crate::gpu::GpuError`].
+    /// [`InputError`] for an object that is not of this scene, for terrain (its instances are its patches), and for a
+    /// placement that [`Placement::checked`] refuses; [`crate::gpu::GpuError`].
     ///
     /// # Examples
     ///
@@ -55,7 +55,7 @@ impl Scene {
         Ok(InstanceId { object, index, generation })
     }
 
-    /// Removes an instance. Its handle becomes stale, even if another instance takes its place in memory.
+    /// Removes an instance. The instance's handle becomes stale, even if another instance takes over the memory.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, and for a patch of terrain.
@@ -68,12 +68,12 @@ impl Scene {
         Ok(())
     }
 
-    /// Replaces an instance's placement: moves, turns and scales it. An attached instance stays at its bone, and takes the
-    /// new placement when it is detached.
+    /// Replaces an instance's placement: moves, turns and scales the instance. An attached instance stays at its bone
+    /// until it is detached; then it takes the new placement.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and as
-    /// [`Placement::checked`].
+    /// [`InputError`] for an instance that does not exist any more, for a patch of terrain, and for a placement that
+    /// [`Placement::checked`] refuses.
     ///
     /// # Examples
     ///
@@ -98,15 +98,15 @@ impl Scene {
         self.carry(instance)
     }
 
-    /// Starts a clip on a character, at once and without a transition.
+    /// Starts a clip on an instance of a character, at once and without a transition.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more or is no character, for a clip that its model does
-    /// not have, and as [`Play::validate`].
+    /// [`InputError`] for an instance that does not exist any more or is no character, for a clip that the instance's
+    /// model does not have, and for values that [`Play::validate`] refuses.
     ///
     /// # Examples
     ///
-    /// Walking backwards at half speed, and a jump that ends in its last pose.
+    /// One instance walks backwards at half speed, and another jumps and stays in its last pose.
     ///
     /// ```no_run
     /// # use relievo::scene::{InstanceId, Play, Scene, Wrap};
@@ -124,7 +124,7 @@ impl Scene {
         self.carry(instance)
     }
 
-    /// Sets the tint of an instance: factors of red, green, blue and alpha, each 0 to 1, in linear light. The default is
+    /// Sets the tint of an instance: factors of red, green, blue and alpha in linear light, each 0 to 1. The default is
     /// (1, 1, 1, 1). The tint is stored in steps of 1/255. Alpha has an effect only on cut-out and dithered materials.
     ///
     /// # Errors
@@ -138,14 +138,15 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets 32 bits of an instance for the caller's shading (`surface.user_data`); the default is 0.
+    /// Sets the user data of an instance: 32 bits that the caller's shading reads as `surface.user_data`. The default
+    /// is 0.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     ///
     /// # Examples
     ///
-    /// A number per instance, which a shading reads.
+    /// Marks an instance as selected; the shading makes it glow.
     ///
     /// ```no_run
     /// # use relievo::render::Renderer;
@@ -169,15 +170,16 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets the visibility mask of an instance; the default is `u16::MAX`. A view sees the instances whose masks share a
-    /// bit with its own ([`View::set_mask`](crate::scene::View::set_mask)). A mask of 0 hides the instance everywhere.
+    /// Sets the visibility mask of an instance; the default is `u16::MAX`. A view sees an instance if the instance's
+    /// mask and the view's mask ([`View::set_mask`](crate::scene::View::set_mask)) share a bit. A mask of 0 hides the
+    /// instance everywhere.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
     ///
     /// # Examples
     ///
-    /// A body that its own camera does not show, but the others do.
+    /// Hides a body from its own first-person camera. All other views show the body.
     ///
     /// ```no_run
     /// # use relievo::scene::{InstanceId, Scene, View};
@@ -194,9 +196,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Sets whether an instance casts shadows; the default is true. Views that show only casters
+    /// Sets whether an instance casts shadows; the default is true. Some views show only casters
     /// ([`View::set_casters_only`](crate::scene::View::set_casters_only)), such as the view of a
-    /// [`SunShadow`](crate::render::SunShadow), leave out the others.
+    /// [`SunShadow`](crate::render::SunShadow). They leave out instances that cast no shadow.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -206,7 +208,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Like [`Self::instance_mut`], but refuses patches of terrain, which are not spawned.
+    /// Like [`Self::instance_mut`], but refuses patches of terrain, which the caller did not spawn.
     fn spawned_mut(&mut self, instance: InstanceId) -> Result<&mut Object, InputError> {
         let object = self.instance_mut(instance)?;
         if object.kind.is_spawned() {

@@ -1,4 +1,4 @@
-//! Specializations: the inputs from which a part's pipelines are compiled.
+//! Specializations: all inputs from which the pipelines of a part are compiled.
 
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub(crate) enum Program {
     Mesh,
     Relief,
     Terrain,
-    /// A caller-defined kind's.
+    /// The shader of a caller-defined kind.
     Own(KindProgram),
 }
 
@@ -31,7 +31,7 @@ impl Program {
         }
     }
 
-    /// Input of the generator of entry points.
+    /// Facts about the shader from which its entry points are generated.
     pub fn kind(&self) -> KindText<'_> {
         let of = |name, blends, deep| KindText { name, blends, deep, moves: true };
         match self {
@@ -42,17 +42,17 @@ impl Program {
         }
     }
 
-    /// The shader, with the facts that an output needs about it.
+    /// The shader with all facts from which entry points for a caller's output are generated.
     pub fn generated(&self) -> program::Program<'_> {
         program::Program { text: self.text(), kind: self.kind(), is_own: matches!(self, Self::Own(_)) }
     }
 
-    /// Names declared by the caller's text.
+    /// Names that the caller's text declares. Empty for shaders of the crate.
     pub fn declared(&self) -> &[String] {
         if let Self::Own(program) = self { program.declared() } else { &[] }
     }
 
-    /// The WGSL, which ends with the function `shade`.
+    /// The complete WGSL of the shader, which ends with the function `shade`.
     pub fn text(&self) -> &str {
         match self {
             Self::Mesh => RENDER_SCENE_MESH.source,
@@ -66,34 +66,34 @@ impl Program {
 /// Pipeline state of a part, besides the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(crate) struct PartState {
-    /// Whether alpha decides which pixels are drawn (masked or dithered).
+    /// Whether the part is masked or dithered, so that alpha decides which pixels are drawn.
     pub cut_out: bool,
-    /// Whether it is blended, in a layer of its own.
+    /// Whether the part is blended. Blended parts are drawn in a layer of their own.
     pub blended: bool,
     /// Whether both sides of triangles are visible.
     pub double_sided: bool,
-    /// Layers in which it writes the surface's depth instead of the triangles'.
+    /// Layers in which the part writes the depth of its surface instead of the depth of its triangles.
     pub own_depth: OwnDepth,
 }
 
-/// Layers in which a part writes the surface's depth instead of the triangles'.
+/// Layers in which a part writes the depth of its surface instead of the depth of its triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(crate) enum OwnDepth {
     #[default]
     Never,
-    /// Only in the depth layer.
+    /// Only in the depth layer; other layers get the depth of the triangles.
     Depth,
     Always,
 }
 
-/// Groups of layers with different override constants.
+/// Groups of layers. All layers of a group use the same override constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shown {
-    /// Lit surfaces.
+    /// Layers that show lit surfaces.
     Lit,
-    /// Surfaces before they are lit.
+    /// Layers that show surfaces before lighting.
     Surface,
-    /// Positions and cut-outs only.
+    /// Layers that need only positions and cut-outs.
     Place,
 }
 
@@ -108,7 +108,7 @@ pub(crate) struct Specialization(Arc<Inner>);
 struct Inner {
     program: Program,
     state: PartState,
-    /// Override constants for each of [`Shown`].
+    /// Override constants for each group of layers, indexed by [`Shown`].
     constants: [Constants; 3],
     hash: u64,
 }
@@ -145,7 +145,8 @@ impl Specialization {
         Self(Arc::new(inner))
     }
 
-    /// For a mesh with materials. `textured` and `normal_mapped` say whether any of them has a texture or a normal map.
+    /// The specialization of a mesh with materials. `textured` tells whether any material has a texture, and
+    /// `normal_mapped` whether any has a normal map. `morphed` tells whether levels of detail geomorph.
     pub fn mesh(state: PartState, textured: bool, normal_mapped: bool, morphed: bool) -> Self {
         let PartState { double_sided, cut_out, .. } = state;
         let full = scene_mesh::Constants {
@@ -160,7 +161,7 @@ impl Specialization {
         Self::new(Program::Mesh, state, [full, full, place].map(|constants| constants.list()))
     }
 
-    /// For a relief-mapped mesh.
+    /// The specialization of a relief-mapped mesh.
     pub fn relief(options: &ReliefOptions, double_sided: bool) -> Self {
         let own_depth = if options.depth { OwnDepth::Always } else { OwnDepth::Depth };
         let state = PartState { cut_out: options.silhouette, blended: false, double_sided, own_depth };
@@ -171,7 +172,7 @@ impl Specialization {
             green_up: options.normal_map == Some(Green::Up),
             silhouette: options.silhouette,
             choose_mip: options.chooses_mip(),
-            // The renderer sets these.
+            // The renderer sets the values of these constants later.
             own_depth: false,
             reversed: false,
             shadowed: false,
@@ -184,7 +185,7 @@ impl Specialization {
         Self::new(Program::Relief, state, [full, surface, place].map(|constants| constants.list()))
     }
 
-    /// For patches of terrain, which are double-sided.
+    /// The specialization of terrain patches, which are double-sided.
     pub fn terrain(style: TerrainStyle) -> Self {
         let wireframe = |wireframe| scene_terrain::Constants { wireframe, shadowed: false, fade: 0 }.list();
         let state = PartState { double_sided: true, ..PartState::default() };
@@ -192,9 +193,9 @@ impl Specialization {
         Self::new(Program::Terrain, state, [full, wireframe(false), wireframe(false)])
     }
 
-    /// For a caller-defined kind.
+    /// The specialization of a part of a caller-defined kind.
     pub fn own(program: &KindProgram, state: PartState) -> Self {
-        // Every caller's text declares them.
+        // The shader of every caller-defined kind declares these constants.
         let constants = [SHADOWED, OWN_DEPTH, REVERSED, FADE].map(|name| (name, 0.0)).to_vec();
         Self::new(Program::Own(program.clone()), state, std::array::from_fn(|_| constants.clone()))
     }
@@ -207,8 +208,8 @@ impl Specialization {
         self.0.state
     }
 
-    /// The constants for some layers, including those that the renderer sets: whether shading looks surfaces up in a sun's
-    /// shadow map, whether depth falls with distance, and how fading instances are drawn.
+    /// The override constants for a group of layers. The renderer sets some of them by these arguments: whether shading
+    /// samples a sun's shadow map, whether depth falls with distance, and how fading instances are drawn.
     pub fn constants(&self, shown: Shown, shadowed: bool, reversed: bool, fade: Fade) -> Constants {
         let flag = |value: bool| f64::from(u8::from(value));
         let set = [
@@ -225,21 +226,21 @@ impl Specialization {
     }
 }
 
-/// How the instances of a list that fade are drawn.
+/// How fading instances are drawn. Each pipeline is compiled for one of these ways.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(crate) enum Fade {
-    /// They do not fade.
+    /// The pipeline draws only instances that do not fade.
     #[default]
     None = FADE_NONE as isize,
     Dither = FADE_DITHER as isize,
     Blend = FADE_BLEND as isize,
     /// Only the level with the larger weight is drawn.
     Heavier = FADE_HEAVIER as isize,
-    /// Pushed away from the eye.
+    /// The surface is pushed away from the eye, to write depth that hides the inside of both levels of a cross-fade.
     Pushed = FADE_PUSHED as isize,
 }
 
-/// The constants that the renderer sets.
+/// Names of the override constants that the renderer sets.
 const SHADOWED: &str = "relievo_SHADOWED";
 const OWN_DEPTH: &str = "relievo_OWN_DEPTH";
 const REVERSED: &str = "relievo_REVERSED";

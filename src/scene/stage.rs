@@ -6,7 +6,7 @@ pub(super) const STAGES: usize = 5;
 /// A stage of a frame's compute work. Each is recorded for all objects and views before the next one begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stage {
-    /// Culling and levels of detail of the views.
+    /// Culling and level selection of all views.
     Select,
     /// Choice of the bones to sample.
     Gate,
@@ -22,18 +22,18 @@ impl Stage {
     /// All stages, in order.
     pub const ALL: [Self; STAGES] = [Self::Select, Self::Gate, Self::Sample, Self::LocalToModel, Self::Skin];
 
-    /// All stages in one run.
+    /// All stages, in a single compute pass.
     pub const WHOLE: [&[Self]; 1] = [&Self::ALL];
 
-    /// Each stage in a run of its own.
+    /// Each stage in a compute pass of its own.
     pub const EACH: [&[Self]; STAGES] =
         [&[Self::Select], &[Self::Gate], &[Self::Sample], &[Self::LocalToModel], &[Self::Skin]];
 
-    /// Two runs, between which the caller may write poses.
+    /// Two compute passes. Between them, the caller may write poses.
     pub const HALVES: [&[Self]; 2] =
         [&[Self::Select, Self::Gate, Self::Sample], &[Self::LocalToModel, Self::Skin]];
 
-    /// The label of its compute pass.
+    /// The label of the stage's compute pass.
     pub fn label(self) -> &'static str {
         match self {
             Self::Select => "scene: select",

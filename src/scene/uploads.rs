@@ -1,4 +1,4 @@
-//! Uploads of added objects, spread over frames.
+//! Uploads the data of added objects, spread over several frames.
 
 use crate::gpu::{Gpu, PendingUploads};
 use crate::scene::Scene;
@@ -7,23 +7,25 @@ use crate::scene::object::Object;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Sets the largest number of bytes of added data that each frame uploads. With `None`, the default, everything is
-    /// uploaded with the next frame. The setting applies to objects added from now on.
+    /// Sets the largest number of bytes of newly added objects that each frame uploads. `None`, the default, uploads
+    /// everything with the next frame. The setting applies to objects that are added after this call.
     ///
-    /// Use it if objects are added while the program runs, where one long frame would be visible. Meshes, clips and
-    /// textures then wait on the host, object by object. Until all of an object has arrived, it is neither drawn nor hit by
-    /// rays ([`Scene::pick`]), but it can be changed and spawned.
+    /// Use a budget if the program adds objects while it runs, so that no single frame becomes visibly long. Meshes,
+    /// clips and textures then wait on the host, object by object. An object is drawn, and hit by rays
+    /// ([`Scene::pick`]), once all of its data has arrived. Before that, it can already be changed, and instances can
+    /// be spawned.
     ///
-    /// A frame uploads whole rows of textures, so it may exceed the budget by up to a row. Some costs stay in the call that
-    /// adds an object: host work (mip levels, bounds of motion) and device work (heights of terrain, maps of reliefs).
-    /// `Scene::rebuild` also uploads everything at once. Render bundles must be made anew when an object appears.
+    /// A frame uploads whole rows of textures, so it may exceed the budget by up to one row. The call that adds an
+    /// object still does some work at once: on the host (mip levels, bounds of motion) and on the device (heights of
+    /// terrain, maps of reliefs). `Scene::rebuild` also uploads everything at once. When an object appears, render
+    /// bundles must be recorded again.
     ///
     /// # Errors
     /// [`InputError`] for 0 bytes.
     ///
     /// # Examples
     ///
-    /// A level that is loaded while the program draws, 2 MiB a frame.
+    /// Loads a level while the program draws, 2 MiB per frame.
     ///
     /// ```no_run
     /// # use relievo::asset::Model;
@@ -46,12 +48,13 @@ impl Scene {
         Ok(())
     }
 
-    /// The number of bytes that wait on the host; see [`Scene::set_upload_budget`].
+    /// The number of bytes of added objects that still wait on the host; see [`Scene::set_upload_budget`].
     pub fn waiting(&self) -> usize {
         self.objects.iter().filter_map(|object| object.pending.as_ref()).map(PendingUploads::len).sum()
     }
 
-    /// Whether a part of an object waits on the host, so that the object is not drawn; see [`Scene::set_upload_budget`].
+    /// Whether data of an object still waits on the host. Such an object is not drawn; see
+    /// [`Scene::set_upload_budget`].
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
@@ -59,7 +62,7 @@ impl Scene {
         Ok(self.object_at(object)?.pending.is_some())
     }
 
-    /// The device to create an object on, and the queue of its uploads if they are spread.
+    /// The device on which to create an object. With an upload budget, also the queue of the object's uploads.
     pub(super) fn uploader(&self) -> (Gpu, Option<PendingUploads>) {
         if self.upload_budget.is_none() {
             return (self.gpu.clone(), None);
@@ -68,7 +71,7 @@ impl Scene {
         (gpu, Some(pending))
     }
 
-    /// Uploads waiting data, up to the budget of a frame. Returns the number of bytes.
+    /// Uploads waiting data of all objects, up to the budget of a frame. Returns the number of uploaded bytes.
     pub(super) fn upload(&mut self) -> Result<usize, Error> {
         let most = self.upload_budget.unwrap_or(usize::MAX);
         let mut sent = 0;
@@ -83,12 +86,12 @@ impl Scene {
 }
 
 impl Object {
-    /// Whether it is visible and has arrived on the device completely.
+    /// Whether the object is shown, and all of its data has arrived on the device.
     pub(super) fn is_drawn(&self) -> bool {
         self.is_shown && self.pending.is_none()
     }
 
-    /// Uploads about `most` bytes of waiting data.
+    /// Uploads about `most` bytes of the object's waiting data. Returns the number of uploaded bytes.
     fn upload(&mut self, gpu: &Gpu, most: usize) -> Result<usize, Error> {
         let Some(pending) = &self.pending else { return Ok(0) };
         let sent = pending.send(gpu, most)?;

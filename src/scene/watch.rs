@@ -1,4 +1,4 @@
-//! Bone matrices that arrive on the host some frames later, without waiting.
+//! Watches bones: their matrices arrive on the host some frames later, without waiting.
 
 use glam::{DAffine3, DVec3};
 
@@ -13,41 +13,42 @@ use crate::scene::placement::Placement;
 use crate::shared::lod::instance::SceneInstance;
 use crate::{Error, InputError};
 
-/// Largest number of frames whose bones are in flight. If all are taken, a frame's bones are left out.
+/// Largest number of frames whose bones are in flight. If that many are in flight, the next frame's bones are left out.
 const FRAMES: usize = 8;
 
 /// A bone of an instance, for [`Scene::watch_bones`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct InstanceBone<'a> {
-    /// The instance of a character.
+    /// An instance of a character.
     pub instance: InstanceId,
     /// Name of the bone, or its index in digits.
     pub bone: &'a str,
 }
 
-/// Watched bones, as posed in one frame.
+/// The transforms of all watched bones in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WatchedBones {
-    /// Number of the frame: how many frames the scene had recorded before it.
+    /// Number of the frame: the number of frames that the scene recorded before it.
     pub frame: u64,
     /// The scene's time in that frame, in seconds.
     pub time: f64,
-    /// The bones, in the order of the request. Bones of instances that no longer existed are left out.
+    /// The bones, in the order of the request. Bones whose instances no longer existed in that frame are left out.
     pub bones: Vec<WatchedBone>,
 }
 
-/// A bone of an instance, as posed in one frame.
+/// The transform of a watched bone in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WatchedBone {
     /// The instance.
     pub instance: InstanceId,
     /// The index of the bone in the skeleton.
     pub bone: usize,
-    /// Whether a view of the frame saw the instance. If not, its bones are those of the last frame in which a view saw it.
+    /// Whether a view of the frame saw the instance. If not, the transform is older: it is from the last frame in which
+    /// a view saw the instance.
     pub is_current: bool,
-    /// The cell of the instance's placement.
+    /// The cell of the instance's placement. `cell_from_bone` is relative to this cell's corner.
     pub cell: [i32; 3],
-    /// The transform from bone space to world axes, relative to the cell's corner: three rows.
+    /// The transform from bone space to world axes, relative to the cell's corner, as three matrix rows.
     pub cell_from_bone: Affine,
 }
 
@@ -57,13 +58,13 @@ impl WatchedBone {
         self.world_from_bone().translation
     }
 
-    /// The transform from bone space to the world.
+    /// The transform from bone space to world coordinates.
     pub fn world_from_bone(&self) -> DAffine3 {
         DAffine3::from_translation(Placement::corner(self.cell)) * affine_of(&self.cell_from_bone)
     }
 }
 
-/// A frame in flight.
+/// Facts about a frame whose bones are in flight.
 #[derive(Debug)]
 struct About {
     frame: u64,
@@ -71,7 +72,7 @@ struct About {
     bones: Vec<(InstanceId, usize, SceneInstance)>,
 }
 
-/// The watched bones.
+/// The bones to watch, and the readback of their matrices.
 #[derive(Debug)]
 pub(super) struct Watch {
     chosen: Vec<(InstanceId, usize)>,
@@ -79,21 +80,20 @@ pub(super) struct Watch {
     last: Option<WatchedBones>,
 }
 
-/// Bytes per bone: its model matrix, and its instance's allowed displacement.
+/// Bytes per bone: the bone's model matrix, and the allowed displacement of the bone's instance.
 const BYTES: u64 = (size_of::<Affine>() + size_of::<f32>()) as u64;
 
 impl Scene {
-    /// Watches bones of characters. From the next frame on,
-    /// [`Scene::watched_bones`] returns their matrices. The list replaces the previous one. Each bone costs two small
-    /// copies per frame.
+    /// Watches bones of characters. From the next frame on, [`Scene::watched_bones`] returns their matrices. The list
+    /// replaces the previous list. Each bone costs two small copies per frame.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does
-    /// not have; [`GpuError`].
+    /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that the
+    /// instance's model does not have; [`GpuError`].
     ///
     /// # Examples
     ///
-    /// Where a hand is, a few frames late and without waiting.
+    /// Prints the position of a hand, a few frames late and without waiting.
     ///
     /// ```no_run
     /// # use relievo::scene::{InstanceBone, InstanceId, Scene};
@@ -116,19 +116,20 @@ impl Scene {
         Ok(())
     }
 
-    /// The watched bones of the last frame whose matrices have arrived; `None` before the first. The call does not wait:
-    /// matrices arrive when the device has executed the frame and is polled, which each submission does.
+    /// The watched bones of the last frame whose matrices have arrived; `None` before the first. The call does not
+    /// wait. Matrices arrive when the device has executed the frame and is polled; each submission polls the device.
     pub fn watched_bones(&mut self) -> Option<&WatchedBones> {
         let watch = self.watch.as_mut()?;
         watch.arrive();
         watch.last.as_ref()
     }
 
-    /// The index of a character's bone, given by its name or its index in digits. A name that is a number takes precedence.
+    /// The index of a character's bone in the skeleton. `name_or_index` is the bone's name, or its index in digits. A
+    /// bone whose name is that number takes precedence.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does not
-    /// have.
+    /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that the
+    /// instance's model does not have.
     pub fn bone(&self, instance: InstanceId, name_or_index: &str) -> Result<usize, InputError> {
         self.object_of(instance)?.character().ok_or_else(no_character)?.bone(name_or_index)
     }
@@ -140,12 +141,12 @@ impl Watch {
         Ok(Self { chosen, ring, last: None })
     }
 
-    /// The same bones on another device.
+    /// The same bones, watched on another device.
     pub(super) fn on(&self, gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { last: self.last.clone(), ..Self::new(gpu, self.chosen.clone())? })
     }
 
-    /// Records the copies of a frame, if a buffer is free.
+    /// Records the copies of a frame's matrices, if a readback buffer is free.
     pub(super) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -176,7 +177,7 @@ impl Watch {
         });
     }
 
-    /// Discards frames that were dropped.
+    /// Discards the readbacks of frames whose encoders were dropped.
     pub(super) fn invalidate(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
         self.ring.invalidate(gpu)
     }

@@ -1,6 +1,6 @@
-//! The generator of entry points, which `build.rs` uses for the crate's own kinds.
+//! The generator of shader entry points. `build.rs` uses the same files for the crate's own kinds.
 
-// Both users leave out some of the items.
+// `build.rs` and the crate each use only some of the items.
 #[allow(dead_code)]
 #[path = "../../build/entries.rs"]
 pub(crate) mod entries;

@@ -19,12 +19,13 @@ impl Looks {
     /// No materials and no images.
     pub const NONE: Self = Self { materials: Vec::new(), images: Vec::new() };
 
-    /// Takes the materials and images out of a model.
+    /// Moves the materials and images out of a model, which keeps none.
     pub fn taken(model: &mut Model) -> Self {
         Self { materials: std::mem::take(&mut model.materials), images: std::mem::take(&mut model.images) }
     }
 
-    /// The index of the material with this name or this index. A name that is a number takes precedence.
+    /// The index of a material. `name_or_index` is the material's name, or its index in digits. A material whose name
+    /// is that number takes precedence.
     ///
     /// # Errors
     /// [`InputError`] that lists up to 20 materials.
@@ -38,7 +39,7 @@ impl Looks {
         })
     }
 
-    /// Checks all materials. Errors name them below `model`.
+    /// Checks all materials. The path of an error begins with `model.materials`.
     ///
     /// # Errors
     /// [`InputError`] that names the field.
@@ -47,7 +48,7 @@ impl Looks {
         all.try_for_each(|(at, material)| self.check(&format!("model.materials[{at}]"), material))
     }
 
-    /// Checks a material against these images. `path` names it in errors.
+    /// Checks a material's values, and that the images it refers to exist. The path of an error begins with `path`.
     ///
     /// # Errors
     /// [`InputError`] that names the field.
@@ -77,11 +78,12 @@ impl Looks {
         Ok(())
     }
 
-    /// Replaces an image, or appends one. Returns the previous image.
+    /// Replaces the image at `index` and returns the previous one. An index equal to the number of images appends the
+    /// image; the result is then `None`.
     ///
     /// # Errors
-    /// [`InputError`] for an image without texels or beyond the device's limit, and for an index above the number of
-    /// images.
+    /// [`InputError`] for an image without texels or larger than the device's textures, and for an index above the
+    /// number of images.
     pub fn set_image(
         &mut self,
         gpu: &Gpu,

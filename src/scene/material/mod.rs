@@ -17,37 +17,40 @@ use crate::{Error, InputError};
 pub(crate) use textures::check_image;
 use textures::{Texels, texture_array};
 
-/// Materials of the triangles that share a pipeline and samplers.
+/// Materials of one part of a mesh. The triangles of a part share a pipeline and samplers.
 #[derive(Debug, Clone)]
 pub(crate) struct PartMaterials {
     /// Bind group 2 of `render/scene_mesh`.
     pub group: Group,
     /// Whether any material has a normal map.
     pub normal_mapped: bool,
-    /// Whether alpha decides which pixels are drawn, for any material.
+    /// Whether any material is cut out, so that alpha decides which pixels are drawn.
     pub cut_out: bool,
     /// Whether any material has a texture.
     pub textured: bool,
-    /// Material per table entry.
+    /// The object's material for each table entry; `None` for opaque white.
     materials: Vec<Option<usize>>,
     entries: Buffer<SceneMaterial>,
     colors: Layers,
     normals: Layers,
-    /// Samplings of colours and of normal maps.
+    /// Sampling of the colour textures, then of the normal maps.
     samplings: [Sampling; 2],
 }
 
-/// A texture slot of a material.
+/// A function that returns one of a material's textures: its colours or its normal map.
 type TextureOf = fn(&Material) -> Option<Texture>;
 
 impl PartMaterials {
-    /// Uploads a table with an entry for each of `materials`, which are indices of the object's materials. An entry without
-    /// a material is opaque white. The first of `samplings` filters colours, the second normal maps. The images become
-    /// layers of two arrays, as wide as the widest and as high as the highest image; smaller images are enlarged.
+    /// Uploads the materials of a part: a table with one entry per element of `materials`, and two texture arrays. The
+    /// elements are indices of the object's materials; the entry for `None` is opaque white. The first of `samplings`
+    /// filters colours, the second filters normal maps.
+    ///
+    /// Each image is one layer of a texture array. All layers are as wide as the widest image and as high as the
+    /// highest one. Smaller images are enlarged.
     ///
     /// # Errors
-    /// [`InputError`] for a material or an image that the object does not have; [`crate::gpu::GpuError`], also for more
-    /// images than an array may have layers.
+    /// [`InputError`] for a material or an image that the object does not have; [`crate::gpu::GpuError`], also if there
+    /// are more images than a texture array may have layers.
     pub fn new(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -86,7 +89,7 @@ impl PartMaterials {
         Ok(all.with_kinds(&table))
     }
 
-    /// These materials, with the flags for pipelines that a table implies.
+    /// The same materials, with pipeline flags computed from `table`.
     fn with_kinds(self, table: &[SceneMaterial]) -> Self {
         Self {
             normal_mapped: table.iter().any(|entry| entry.normal_layer != NO_LAYER),
@@ -96,18 +99,18 @@ impl PartMaterials {
         }
     }
 
-    /// Whether a table entry is the object's material with this index.
+    /// Whether this part uses the object's material with index `material`.
     pub fn has(&self, material: usize) -> bool {
         self.materials.contains(&Some(material))
     }
 
-    /// Whether a material shows this image.
+    /// Whether a material of this part shows the object's image with index `image`.
     pub fn shows(&self, image: usize) -> bool {
         self.colors.images.contains(&image) || self.normals.images.contains(&image)
     }
 
-    /// These materials with the present materials and images of `looks`. If every image is in the texture arrays already, only
-    /// the table changes. Otherwise, or with `anew`, all textures are uploaded again.
+    /// Makes the part's materials again after `looks` has changed. If no texture or sampling is new, only the table
+    /// changes. A new texture, a new sampling or `anew` makes all textures be uploaded again.
     ///
     /// # Errors
     /// As for [`PartMaterials::new`].
@@ -128,16 +131,16 @@ impl PartMaterials {
         Ok(Changed { materials: self.clone().with_kinds(&table), table: Some(table) })
     }
 
-    /// Samplings of colours and of normal maps.
+    /// Sampling of the colour textures, then of the normal maps.
     pub fn samplings(&self) -> [Sampling; 2] {
         self.samplings
     }
 
-    /// Samplings of colours and of normal maps after the material with this index has replaced an old one. They stay
-    /// unchanged unless no other material has a texture; then the new material decides.
+    /// Sampling of the colour textures, then of the normal maps, after the material at `index` has replaced `old`. If
+    /// no other material of the part has such a texture, the new material decides. Otherwise the sampling stays.
     ///
     /// # Errors
-    /// [`InputError`] for a sampling that differs from the other materials'.
+    /// [`InputError`] if the new material has another sampling than the other materials of the part.
     pub fn samplings_with(
         &self,
         looks: &Looks,
@@ -165,16 +168,16 @@ impl PartMaterials {
     }
 }
 
-/// New materials of a part.
+/// New materials of a part, as [`PartMaterials::changed`] returns them.
 #[derive(Debug)]
 pub(crate) struct Changed {
     pub materials: PartMaterials,
-    /// The new table, if the buffers stay; else `None`.
+    /// The table to write into the existing buffer; `None` if new buffers were made.
     table: Option<Vec<SceneMaterial>>,
 }
 
 impl Changed {
-    /// Stages the new table into the existing buffers.
+    /// Stages the table for the existing buffer. Does nothing if new buffers were made.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -186,7 +189,7 @@ impl Changed {
     }
 }
 
-/// The table of a part. Missing images are appended to the layers.
+/// The material table of a part. Images that are not yet in `colors` or `normals` are appended there.
 fn table(
     looks: &Looks,
     materials: &[Option<usize>],
@@ -200,7 +203,7 @@ fn table(
     materials.iter().map(entry).collect()
 }
 
-/// The material of meshes without one.
+/// The table entry for triangles without a material: opaque white.
 const WHITE: SceneMaterial = SceneMaterial {
     color: [1.0; 4],
     cutoff: CUTOFF_OPAQUE,
@@ -209,14 +212,14 @@ const WHITE: SceneMaterial = SceneMaterial {
     normal_scale: 1.0,
 };
 
-/// Indices of the object's images that share an array, in the order of their layers.
+/// The layers of a texture array: for each layer, the index of the object's image in it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Layers {
     images: Vec<usize>,
 }
 
 impl Layers {
-    /// The layer of an image, which is appended if it is new.
+    /// The layer of the object's image with index `image`. A new image is appended.
     fn layer(&mut self, image: usize) -> u32 {
         let known = self.images.iter().position(|known| *known == image);
         let layer = known.unwrap_or_else(|| {
@@ -227,7 +230,7 @@ impl Layers {
     }
 }
 
-/// A material's table entry.
+/// The table entry of the object's material with this index.
 fn entry(
     looks: &Looks,
     index: usize,

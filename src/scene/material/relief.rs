@@ -1,4 +1,4 @@
-//! The relief of a static mesh's part, on the device.
+//! Device resources of a relief on a part of a static mesh.
 
 use crate::gpu::bindings::render::scene_relief::Group2;
 use crate::gpu::{Gpu, Group, Uniform};
@@ -9,25 +9,25 @@ use crate::surface::relief::March;
 use crate::surface::{ReliefMaps, ReliefMaterial, ReliefOptions};
 use crate::{Error, InputError};
 
-/// A relief that replaces the materials of a part.
+/// The relief of a part, bound in place of materials.
 #[derive(Debug, Clone)]
 pub(crate) struct ReliefBindings {
     /// Bind group 2 of `render/scene_relief`.
     pub group: Group,
-    /// Options that pipelines are compiled for.
+    /// Options for which the part's pipelines are compiled.
     pub options: ReliefOptions,
 }
 
-/// The parameters of a relief, besides its maps and options.
+/// Parameters of a relief, without its maps and options.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReliefLook {
-    /// Depth, plane and the width of shadows; the light is the scene's.
+    /// Depth, plane and width of shadows. The material's light is ignored, because the scene has one light.
     pub material: ReliefMaterial,
-    /// Ray marching.
+    /// Settings of the ray march.
     pub march: March,
-    /// The mesh's uv range: lower and upper corner.
+    /// Range of the mesh's texture coordinates: lowest and highest (u, v).
     pub range: [[f32; 2]; 2],
-    /// Model units per uv unit, > 0.
+    /// Length of one uv unit in model units, above 0.
     pub world: f32,
     /// Factor of the albedo: linear red, green and blue.
     pub color: [f32; 3],

@@ -9,10 +9,11 @@ use crate::gpu::{Gpu, GpuError};
 use crate::surface::mips::Mips;
 use crate::{Error, InputError, srgb};
 
-/// Largest number of texels of an array's finest level (256 MiB). Images of larger arrays are halved.
+/// Largest number of texels in the finest mip level of a texture array, all layers together (256 MiB). In a larger
+/// array, all images are halved in width and height.
 const MAX_TEXELS: u64 = 1 << 26;
 
-/// Meaning of texels.
+/// The meaning of an image's channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Texels {
     /// sRGB colours and linear alpha.
@@ -21,11 +22,12 @@ pub(super) enum Texels {
     Normal,
 }
 
-/// Uploads some of `all` images, one layer each, with mip levels if `has_mips`. Without images, the array is one texel,
-/// white or flat.
+/// Uploads a texture array. For each layer, `images` has the index of the layer's image in `all`. With `has_mips`, the
+/// array has all mip levels. If `images` is empty, the array is one texel: white, or a flat normal.
 ///
 /// # Errors
-/// [`InputError`] for an image that [`check_image`] refuses; [`GpuError`], also for more images than an array may have layers.
+/// [`InputError`] for an image that [`check_image`] refuses; [`GpuError`], also if there are more images than a texture
+/// array may have layers.
 pub(super) fn texture_array(
     gpu: &Gpu,
     all: &[RgbaImage],
@@ -63,7 +65,7 @@ pub(super) fn texture_array(
 }
 
 impl Texels {
-    /// The neutral texel.
+    /// The neutral texel: opaque white, or the normal of a flat surface.
     fn flat(self) -> [u8; 4] {
         match self {
             Self::Color => [255; 4],
@@ -81,10 +83,11 @@ impl Texels {
     }
 }
 
-/// Checks that an image has texels, and fits the device's texture size. `path` names it in errors.
+/// Checks that an image has texels, and is at most as wide and high as the device's textures. `path` names the image in
+/// errors.
 ///
 /// # Errors
-/// [`InputError`] with its width and height.
+/// [`InputError`] with the image's width and height.
 pub(crate) fn check_image(gpu: &Gpu, path: &str, image: &RgbaImage) -> Result<(), InputError> {
     let most = gpu.device().limits().max_texture_dimension_2d;
     let (width, height) = image.dimensions();
@@ -106,7 +109,8 @@ fn common_size(images: &[&RgbaImage]) -> [u32; 2] {
     size
 }
 
-/// The image resized, filtered in linear light; unchanged if it has that size already.
+/// The image resized to a width and height. Colours are filtered in linear light. An image that already has this size
+/// is returned without a copy.
 fn resized(image: &RgbaImage, [width, height]: [u32; 2], texels: Texels) -> Cow<'_, RgbaImage> {
     if image.dimensions() == (width, height) {
         return Cow::Borrowed(image);
@@ -166,7 +170,7 @@ mod tests {
         let (wide, high, tiny) = (image(64, 2), image(4, 32), image(1, 1));
         assert_eq!(common_size(&[&wide, &high, &tiny]), [64, 32]);
         assert_eq!(common_size(&[&tiny]), [1, 1]);
-        // 64 Mi texels leave each of nine layers 2^22 after halving; 4096 × 4096 are four times that.
+        // Nine layers of 4096 × 4096 texels exceed the limit of 64 Mi texels; nine of 2048 × 2048 do not.
         let large = image(4096, 4096);
         assert_eq!(common_size(&[&large; 9]), [2048, 2048]);
     }

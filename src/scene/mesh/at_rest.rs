@@ -10,7 +10,7 @@ use crate::scene::object_kind::{MakeOn, Making, ObjectKind, OnDevice};
 use crate::scene::ray::Surface;
 use crate::skinning::merged::Merged;
 
-/// A model's merged meshes at rest, without images.
+/// The merged meshes of a model in the rest pose, without images.
 #[derive(Debug)]
 pub(in crate::scene) struct MeshAtRest(pub Merged);
 

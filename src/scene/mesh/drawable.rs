@@ -15,41 +15,43 @@ use crate::skinning::vertex::Vertex;
 /// Device buffers of a mesh.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshGeometry {
-    /// Range of its instances.
+    /// Uniform with the range of the instances that show the mesh.
     pub object: Uniform<SceneObject>,
-    /// Layout of its vertices.
+    /// Uniform with the layout of the mesh's vertices.
     pub params: Uniform<MeshParams>,
-    /// Vertices in model space: shared by all instances, or in pages per instance.
+    /// Vertices in model space: one copy for all instances, or pages of 64 vertices for each instance.
     pub vertices: Buffer<Vertex>,
-    /// Offset of previous positions in `vertices`, in pairs of floats; 0 = none.
+    /// Offset of the last frame's positions in `vertices`, in pairs of floats; 0 if there are none.
     pub last: u32,
-    /// Page per cluster and instance. Any buffer if vertices are not in pages.
+    /// Page of each cluster of each instance. If vertices are not in pages, this is any buffer, and shaders do not read
+    /// it.
     pub page_table: Buffer<u32>,
     /// Texture coordinates, one pair per vertex of the mesh.
     pub uv: Buffer<[f32; 2]>,
-    /// Index per vertex into its part's material table, followed from `partners` on by the vertex's partner.
+    /// Two tables, one after the other. The first has the index of each vertex's material in the part's table. The
+    /// second starts at `partners` and has the partner of each vertex, towards which the vertex geomorphs.
     pub material_of: Buffer<u32>,
-    /// Offset of partners in `material_of`; 0 = none, so that levels cannot geomorph.
+    /// Offset of the second table in `material_of`; 0 if there is none, so that levels cannot geomorph.
     pub partners: u32,
-    /// Triangle indices, level by level, and part by part in each level.
+    /// Triangle indices, ordered by level of detail, then by part.
     pub indices: Buffer<u32>,
 }
 
-/// A mesh on the device, in parts with one pipeline each.
+/// A mesh on the device. Each of its parts is drawn with one pipeline.
 #[derive(Debug, Clone)]
 pub(crate) struct MeshDrawable {
-    /// The buffers.
+    /// Device buffers of the mesh.
     pub geometry: MeshGeometry,
-    /// Number of clusters if vertices are in pages, else 0.
+    /// Number of clusters of 64 vertices if vertices are in pages; else 0.
     pub clusters: u32,
-    /// Its parts, in the order of their draws.
+    /// Parts of the mesh, in the order of their draws.
     pub parts: Vec<MeshPart>,
-    /// Bind group 1.
+    /// Bind group 1, with the mesh's buffers.
     pub group: Group,
 }
 
 impl MeshDrawable {
-    /// Binds the buffers. If one of them is replaced, all must be bound again.
+    /// Binds the buffers of a mesh. If a buffer is replaced later, all must be bound again.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -71,12 +73,12 @@ impl MeshDrawable {
         Ok(Self { group: group.bind(gpu, &layouts.mesh)?, geometry, clusters, parts })
     }
 
-    /// Layout of the vertices.
+    /// The layout of the mesh's vertices in shader format.
     fn params(&self) -> MeshParams {
         MeshParams { clusters: self.clusters, last: self.geometry.last, partners: self.geometry.partners }
     }
 
-    /// The same mesh with its vertices in other pages.
+    /// The same mesh with vertices in `pages`.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -91,7 +93,8 @@ impl MeshDrawable {
         Self::new(gpu, layouts, geometry, self.clusters, self.parts.clone())
     }
 
-    /// The same mesh for other instances, with vertices in their own pages.
+    /// A copy of the mesh for another chunk of instances, with vertices in `pages` and uniforms of its own. All other
+    /// buffers are shared.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -147,9 +150,9 @@ pub(crate) struct MeshPart {
 /// Blending and visible sides of a part's triangles.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Faces {
-    /// Whether they are blended, in a layer of their own.
+    /// Whether the triangles are blended. Blended triangles are drawn in a layer of their own.
     pub blended: bool,
-    /// Whether both sides are visible.
+    /// Whether both sides of the triangles are visible.
     pub double_sided: bool,
 }
 
@@ -160,24 +163,24 @@ impl MeshPart {
         Self { faces, morphed: false, materials, specialization }
     }
 
-    /// Sets whether levels of detail geomorph.
+    /// Sets whether the part's levels of detail geomorph.
     pub fn set_morphed(&mut self, morphed: bool) {
         self.morphed = morphed;
         self.specialization = self.materials.specialization(self.faces, morphed);
     }
 
-    /// Replaces the materials.
+    /// Replaces the part's materials.
     pub fn set_materials(&mut self, materials: MeshMaterials) {
         self.specialization = materials.specialization(self.faces, self.morphed);
         self.materials = materials;
     }
 
-    /// The materials.
+    /// The part's materials.
     pub fn materials(&self) -> &MeshMaterials {
         &self.materials
     }
 
-    /// The part as a renderer draws it.
+    /// The part in the form that renderers draw.
     fn drawn(&self) -> Part<'_> {
         Part { specialization: &self.specialization, group: self.materials.group() }
     }
@@ -188,12 +191,12 @@ impl MeshPart {
 pub(crate) enum MeshMaterials {
     /// Colours, textures and normal maps.
     Plain(PartMaterials),
-    /// A relief, on a static mesh.
+    /// A relief, which only static meshes may have.
     Relief(ReliefBindings),
 }
 
 impl MeshMaterials {
-    /// Bind group 2.
+    /// Bind group 2, with the materials or the relief.
     fn group(&self) -> &Group {
         match self {
             Self::Plain(materials) => &materials.group,

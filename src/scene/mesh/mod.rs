@@ -1,4 +1,4 @@
-//! Meshes of objects on the device: static ones, and those of characters, which bones move.
+//! Meshes of objects on the device: static meshes, and meshes of characters, which bones move.
 
 mod at_rest;
 mod drawable;
@@ -23,15 +23,16 @@ use crate::{Error, InputError};
 pub(super) use at_rest::MeshAtRest;
 pub(crate) use drawable::{Faces, MeshDrawable, MeshGeometry, MeshMaterials, MeshPart};
 
-/// Drawables of an object, and the draws per part and level.
+/// Drawables of an object, and its draws: [`OBJECT_LEVELS`] for each part.
 pub(super) type Drawn = (Vec<Box<dyn Drawable>>, Vec<SceneDraw>);
 
-/// A model's meshes at rest, merged, with a sphere around them.
+/// The merged meshes of a model in the rest pose, and a sphere around their vertices.
 pub fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputError> {
     check(model)?;
     let mut rest = at_rest(model).map_err(|error| error.below("model"))?;
     if model.clips.is_empty() {
-        // Levels were made for this pose, and vertices keep their order.
+        // Without clips, levels of detail were made for the rest pose, and vertices keep their order. So they stay
+        // valid.
         for (mesh, from) in rest.meshes.iter_mut().zip(&model.meshes) {
             mesh.levels.clone_from(&from.levels);
             mesh.partners.clone_from(&from.partners);
@@ -43,13 +44,14 @@ pub fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputEr
     Ok((merged, sphere))
 }
 
-/// The meshes of a model with clips, merged.
+/// The merged meshes of a model with clips.
 pub fn moving_merged(model: &Model) -> Result<Merged, InputError> {
     check(model)?;
     merged(model, OBJECT_LEVELS as usize)
 }
 
-/// Uploads meshes that all instances share. Meshes that exceed a binding are split into pieces.
+/// Uploads meshes whose vertices are the same for all instances. A mesh that exceeds a binding of the device is split
+/// into pieces.
 pub(super) fn drawn(
     gpu: &Gpu,
     layouts: &SceneLayouts,
@@ -76,7 +78,7 @@ pub(super) fn drawn(
     Ok((drawables, draws))
 }
 
-/// Checks that a merged mesh's vertices fit one binding of the device, and its triangles another.
+/// Checks that the vertices of a merged mesh fit one binding of the device, and that its indices fit another.
 pub(super) fn check_binding(gpu: &Gpu, mesh: &Mesh) -> Result<(), InputError> {
     let indices = indices_of_levels(mesh);
     let all = [
@@ -86,7 +88,7 @@ pub(super) fn check_binding(gpu: &Gpu, mesh: &Mesh) -> Result<(), InputError> {
     all.into_iter().try_for_each(|(path, count, bytes)| within_binding(gpu, path, count, bytes))
 }
 
-/// Checks that `count` elements of `bytes` bytes each fit one binding of the device.
+/// Checks that `count` elements of `bytes` bytes each fit one binding of the device. `path` names the count in errors.
 pub(super) fn within_binding(gpu: &Gpu, path: &str, count: usize, bytes: usize) -> Result<(), InputError> {
     let most = gpu.max_binding() / bytes as u64;
     if count as u64 <= most {
@@ -113,12 +115,12 @@ fn check(model: &Model) -> Result<(), InputError> {
     Ok(())
 }
 
-/// Error per level, the full mesh included.
+/// The error of each level of detail in model units, ascending. The first is 0, for the full mesh.
 pub(super) fn errors(merged: &Merged) -> Vec<f32> {
     std::iter::once(0.0).chain(merged.errors.iter().copied()).collect()
 }
 
-/// The draws of a merged mesh's parts: [`OBJECT_LEVELS`] for each part.
+/// The draws of all parts of a merged mesh, [`OBJECT_LEVELS`] for each part. Levels that do not exist have empty draws.
 pub(super) fn part_draws(merged: &Merged, mesh: usize, buffers: &MeshBuffers) -> Vec<SceneDraw> {
     let of_part = |part: &Part| {
         let draw = |level: u32| {
@@ -131,11 +133,11 @@ pub(super) fn part_draws(merged: &Merged, mesh: usize, buffers: &MeshBuffers) ->
     merged.parts.iter().filter(|part| part.mesh == mesh).flat_map(of_part).collect()
 }
 
-/// An empty draw.
+/// A draw without triangles.
 pub(super) const NOTHING: SceneDraw =
     SceneDraw { index_count: 0, instance_count: 0, first_index: 0, base_vertex: 0, first_instance: 0 };
 
-/// The drawable of a merged mesh, with its own vertices or with those in pages.
+/// The drawable of a merged mesh. With `pages`, its vertices are in these pages; otherwise they are in `buffers`.
 pub(super) fn drawable(
     (gpu, layouts): (&Gpu, &SceneLayouts),
     (merged, looks): (&Merged, &Looks),
@@ -178,8 +180,8 @@ pub(super) fn drawable(
     Ok(MeshDrawable::new(gpu, layouts, geometry, count, parts)?)
 }
 
-/// Per slot: the slot of the vertex's partner, and the coarsest level of the object that has the vertex. Empty if the mesh
-/// has no levels or no partners.
+/// A word for each vertex, in the order of `clusters`: the index of the vertex's partner in that order, and the
+/// coarsest level of the object that contains the vertex. Empty if the mesh has no levels or no partners.
 fn partner_words(mesh: &Mesh, errors: &[f32], clusters: &Clusters) -> Vec<u32> {
     if mesh.levels.is_empty() || mesh.partners.is_empty() {
         return Vec::new();
@@ -192,18 +194,20 @@ fn partner_words(mesh: &Mesh, errors: &[f32], clusters: &Clusters) -> Vec<u32> {
     clusters.order.iter().map(word).collect()
 }
 
-/// Per vertex of a merged mesh: the coarsest level of the object that has it. `errors` are the object's.
+/// For each vertex of a merged mesh, the coarsest level of the object that contains the vertex. `errors` are the errors
+/// of the object's levels.
 pub fn coarsest_levels(mesh: &Mesh, errors: &[f32]) -> Vec<u32> {
     let own = own_levels(mesh, errors);
     let of_object = |coarsest: u32| own.iter().rposition(|level| *level <= coarsest).unwrap_or(0) as u32;
     mesh.coarsest_levels().into_iter().map(of_object).collect()
 }
 
-/// Per vertex: the part whose triangles use it.
+/// For each vertex, the index of the part whose triangles use the vertex.
 fn parts_of_vertices(mesh: &Mesh, parts: &[&Part]) -> Vec<usize> {
     let mut part_of = vec![0; mesh.vertices()];
     for (at, part) in parts.iter().enumerate() {
-        // The first range that is not empty is level 0, which has all vertices, or a piece's only level.
+        // The first range that is not empty belongs to level 0, which uses all vertices. A piece of a split mesh has
+        // only one range that is not empty.
         let Some(range) = part.indices.iter().find(|range| !range.is_empty()).cloned() else { continue };
         for vertex in &mesh.indices[range.start as usize..range.end as usize] {
             part_of[*vertex as usize] = at;
@@ -212,7 +216,7 @@ fn parts_of_vertices(mesh: &Mesh, parts: &[&Part]) -> Vec<usize> {
     part_of
 }
 
-/// A material's index in a table, which is extended if needed.
+/// The index of a material in a table. A new material is appended.
 fn entry(table: &mut Vec<Option<usize>>, material: Option<usize>) -> u32 {
     let known = table.iter().position(|other| *other == material);
     known.unwrap_or_else(|| {

@@ -1,4 +1,4 @@
-//! Device resources of an object: growing them, restarting, and moving to another device.
+//! Device resources of an object: growing them, resetting them, and moving them to another device.
 
 use super::{MAX_CAPACITY, Object};
 use crate::gpu::Gpu;
@@ -9,7 +9,7 @@ use crate::shared::lod::instance::INSTANCE_CARRIES;
 use crate::{Error, InputError};
 
 impl Object {
-    /// Doubles the room for instances. Changes nothing if it fails.
+    /// Doubles the capacity for instances. If this fails, nothing changes.
     pub(in crate::scene) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         let capacity = self.instances.capacity();
         if capacity >= MAX_CAPACITY {
@@ -22,20 +22,20 @@ impl Object {
         Ok(())
     }
 
-    /// Makes everything start afresh.
+    /// Starts the object afresh: all instances are uploaded again, and the kind's state on the device is reset.
     pub(in crate::scene) fn refresh(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         self.kind.renew(gpu, layouts, self.instances.capacity(), &mut self.chunks)?;
         self.instances.change_all();
         Ok(())
     }
 
-    /// Creates the object's resources on another device.
+    /// Creates the object's device resources on another device, without using them yet.
     pub(in crate::scene) async fn on(&self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<OnDevice, Error> {
         let (looks, capacity) = (self.looks.as_ref(), self.instances.capacity());
         self.kind.made_on(MakeOn { gpu, layouts, looks, capacity }).await
     }
 
-    /// Takes resources made on another device. Everything starts afresh.
+    /// Replaces the object's device resources by those made on another device. The state of all instances is reset.
     pub(in crate::scene) fn adopt(&mut self, on_device: OnDevice) {
         let OnDevice { chunks, other } = on_device;
         self.kind.adopt(other);
@@ -47,17 +47,17 @@ impl Object {
         self.instances.change_all();
     }
 
-    /// Updates the sphere of an instance after its clip or layers changed.
+    /// Updates the bounding sphere of an instance after its clip or its layers changed.
     pub(in crate::scene) fn bound_again(&mut self, index: u32) {
         if let Some(sphere) = self.kind.sphere_of(index) {
             self.instances.change(index, |instance| instances::bound(instance, &sphere));
         }
     }
 
-    /// Finishes fades that end by scene time `now`.
+    /// Finishes cross-fades of clips that end by scene time `now`, in seconds.
     pub(in crate::scene) fn settle(&mut self, now: f64) {
         for index in self.kind.settle(now) {
-            // A character that carries a mesh keeps the larger sphere until it plays something else.
+            // A character that carries an attached mesh keeps its larger sphere until it plays another clip.
             if self.instances.all()[index as usize].flags & INSTANCE_CARRIES == 0 {
                 self.bound_again(index);
             }

@@ -1,4 +1,4 @@
-//! An object's work in a frame: allocating memory for visible instances, its place in buffers, and staging of changes.
+//! An object's work in a frame: allocating memory for visible instances, laying out buffers, and staging changes.
 
 use std::sync::Arc;
 
@@ -20,8 +20,8 @@ use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LISTS};
 use crate::shared::render::scene_instances::SceneObject;
 
 impl Object {
-    /// Allocates the memory that a frame's views need. If memory is short, levels of detail become coarser. Returns whether
-    /// the chunks changed.
+    /// Allocates the memory that the views of a frame need. If memory is short, levels of detail become coarser.
+    /// Returns true if the chunks changed.
     pub(in crate::scene) fn provide(
         &mut self,
         gpu: &Gpu,
@@ -40,7 +40,7 @@ impl Object {
         Ok(replaced == Replaced::Chunks)
     }
 
-    /// Stages what has changed since the last frame.
+    /// Stages the object's changes since the last frame. `now` is the scene's time in seconds.
     pub(in crate::scene) fn stage(
         &mut self,
         (staged, layout): (&mut Staged, &Layout),
@@ -65,7 +65,7 @@ impl Object {
         self.kind.stage(staged, frame, now)
     }
 
-    /// Prepares everything that depends on the layout.
+    /// Prepares the object's jobs and uniforms for a layout.
     pub(in crate::scene) fn fit(
         &mut self,
         gpu: &Gpu,
@@ -92,7 +92,7 @@ impl Object {
     }
 }
 
-/// Stages consecutive instances of an object, from index `at` on.
+/// Stages changed instances of an object: `run` holds consecutive instances, the first with index `at`.
 fn stage_instances(
     (staged, to): (&mut Staged, &Buffer<SceneInstance>),
     chunks: &[Chunk],
@@ -107,11 +107,11 @@ fn stage_instances(
     Ok(())
 }
 
-/// How far apart along a ray the surfaces of two levels may lie, as a multiple of the coarser one's error: that of a surface that
-/// is seen at 70 degrees from its normal.
+/// The largest distance along a view ray between the surfaces of two levels, as a multiple of the coarser level's
+/// error. It holds for surfaces that are seen at up to 70 degrees from their normal.
 const PUSHED_ERRORS: f32 = 3.0;
 
-/// Stages the ranges of a chunk's instances and vertices. Input: the number of the object, and the errors of its levels.
+/// Stages the uniforms of a chunk's drawables. `number` is the object's number; `errors` are the errors of its levels.
 fn stage_params(staged: &mut Staged, chunk: &Chunk, number: u32, errors: &[f32]) -> Result<(), Error> {
     let (first_instance, first_slot) = (chunk.range.first, chunk.slots.start as u32);
     let next = |level: usize| errors.get(level + 1).or(errors.last()).copied().unwrap_or(0.0);
@@ -121,8 +121,8 @@ fn stage_params(staged: &mut Staged, chunk: &Chunk, number: u32, errors: &[f32])
     chunk.drawables.iter().try_for_each(|drawable| drawable.stage(staged, &object))
 }
 
-/// Lays out the chunks of all objects one after the other, and sets their ranges. The arguments include the number of the
-/// layout and whether motion history is kept.
+/// Lays out the chunks of all objects one after the other in the scene's buffers, and sets each chunk's range.
+/// `version` is the number of the new layout; `keeps_last` is whether motion history is kept.
 ///
 /// # Errors
 /// [`crate::gpu::GpuError`].
@@ -133,7 +133,8 @@ pub(in crate::scene) fn laid_out(
 ) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
     let (mut all, mut draws, mut sorted) = (Vec::new(), Vec::new(), Vec::new());
-    // Sums over all instances stay below 2^31, and so do those of both levels of all fades below 2^32.
+    // The triangle unit keeps sums of triangles over all instances below 2^31. With both levels of all fades, they stay
+    // below 2^32.
     let most = |object: &Object| {
         let triangles = object.triangles().first().copied().unwrap_or(0);
         object.capacity().next_multiple_of(BLOCK as usize) as u64 * u64::from(triangles)
@@ -162,7 +163,7 @@ pub(in crate::scene) fn laid_out(
 }
 
 impl Counted {
-    /// The objects at their places in a layout.
+    /// The objects with their draws in a layout, for statistics.
     fn new(objects: &Slots<Object>) -> Self {
         let counted = |(object, entry): (ObjectId, &Object)| CountedObject {
             object,

@@ -30,7 +30,7 @@ use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 pub(super) use frame::laid_out;
 
-/// Largest number of instances of an object.
+/// Largest number of instances of one object.
 const MAX_CAPACITY: usize = 1 << 20;
 
 /// An object of a scene.
@@ -38,41 +38,41 @@ const MAX_CAPACITY: usize = 1 << 20;
 pub(crate) struct Object {
     pub(super) kind: Box<dyn ObjectKind>,
     pub(super) instances: Instances,
-    /// A sphere around an instance whose bones do not move.
+    /// Bounding sphere of an instance whose bones do not move, in model space.
     pub(super) sphere: BoundingSphere,
-    /// The error of each level in the model's units, ascending from 0.
+    /// The error of each level of detail in model units, ascending from 0.
     pub(super) errors: Vec<f32>,
     pub(super) mesh_fraction: f32,
-    /// How its levels are chosen and change.
+    /// How the object's levels of detail are chosen and change.
     pub(super) level_of_detail: LevelOfDetail,
-    /// Whether any object of the scene has a rank.
+    /// Whether any object of the scene has a rank for budgets ([`LevelOfDetail::rank`]).
     pub(super) is_ranked: bool,
-    /// Budgets count its triangles in units of 2 to the power of this.
+    /// Budgets count the object's triangles in units of 2^`triangle_unit`.
     triangle_unit: u32,
-    /// Middle and half size of a box around the model.
+    /// Middle and half size of a box around the model, in model space.
     model_box: [Vec3; 2],
-    /// LOD bias: 1 unless memory has ended.
+    /// LOD bias: factor of the allowed displacement. It is 1, or more if the device has no memory for the finer levels.
     pub(super) lod_bias: f32,
     /// Dirty: LOD bias or visibility must be uploaded again.
     pub(super) is_retuned: bool,
     /// Dirty: the ranges of rebound drawables must be uploaded again.
     is_rebound: bool,
-    /// The handle's number.
+    /// Number of the object's handle, which shading reads.
     pub(super) handle: u32,
     pub(super) is_shown: bool,
-    /// Data that waits to be uploaded.
+    /// Data of the object that still waits on the host to be uploaded.
     pub(super) pending: Option<PendingUploads>,
-    /// Materials of a mesh or a character.
+    /// Materials and images of a mesh or a character; `None` for other kinds.
     pub(super) looks: Option<Looks>,
-    /// Draws per part and level, [`OBJECT_LEVELS`] for each part, with instance counts of 0.
+    /// The draws of a chunk, [`OBJECT_LEVELS`] for each part. Their instance counts are 0.
     pub(super) draws: Vec<SceneDraw>,
-    /// Chunks, at least one.
+    /// Chunks of instances that are drawn together, at least one.
     pub(super) chunks: Vec<Chunk>,
     fitted: u64,
 }
 
 impl Object {
-    /// A visible object.
+    /// Creates a visible object of the given kind.
     pub(super) fn new(
         kind: impl ObjectKind,
         (instances, sphere): (Instances, BoundingSphere),
@@ -106,7 +106,7 @@ impl Object {
         }
     }
 
-    /// Terrain.
+    /// Creates terrain. Each patch is an instance.
     pub(super) async fn of_terrain(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -117,7 +117,7 @@ impl Object {
         Ok(Self::new(terrain, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
-    /// A static mesh: a model's meshes at rest.
+    /// Creates a static mesh: all meshes of a model in the rest pose.
     pub(super) fn of_mesh(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -134,7 +134,7 @@ impl Object {
         Ok(Self { looks: Some(looks), ..object })
     }
 
-    /// A relief-mapped mesh.
+    /// Creates a relief-mapped mesh.
     pub(super) fn of_relief(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -147,7 +147,7 @@ impl Object {
         Ok(Self::new(relief.clone(), (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 
-    /// An object of a caller-defined kind.
+    /// Creates an object of a caller-defined kind.
     pub(super) fn of_kind(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -161,7 +161,7 @@ impl Object {
         Ok(Self::new(own, (instances, sphere), (errors, 1.0), drawn))
     }
 
-    /// A character: a model with clips.
+    /// Creates a character: a model with clips.
     pub(super) fn of_character(
         gpu: &Gpu,
         layouts: &SceneLayouts,
@@ -180,12 +180,12 @@ impl Object {
         Ok(Self { looks: Some(looks), ..object })
     }
 
-    /// The same object, with uploads that still wait.
+    /// The same object with a queue of uploads that still wait on the host.
     pub(super) fn awaiting(self, pending: Option<PendingUploads>) -> Self {
         Self { pending, ..self }
     }
 
-    /// A chunk of the object, in kernel format.
+    /// A chunk of the object in the format of the kernels that select levels.
     pub(super) fn lod_object(&self, chunk: &Chunk) -> LodObject {
         let triangles = self.triangles();
         let of = LodObject {
@@ -206,7 +206,8 @@ impl Object {
         self.level_of_detail.on_device(self.is_drawn(), self.is_ranked, of)
     }
 
-    /// The fraction of the allowed displacement that levels may use, if they are chosen by error; else 1.
+    /// The fraction of the allowed displacement that levels of detail may use. It is 1 if levels are not chosen by
+    /// error.
     fn error_fraction(&self) -> f32 {
         match self.level_of_detail.criterion() {
             Criterion::Error => self.mesh_fraction,
@@ -214,12 +215,12 @@ impl Object {
         }
     }
 
-    /// Smallest metric per level at which the level is drawn or begins to morph.
+    /// For each level of detail, the smallest metric at which the level is drawn or begins to geomorph.
     pub(super) fn thresholds(&self) -> Vec<f32> {
         self.level_of_detail.thresholds(&self.errors, &self.triangles())
     }
 
-    /// Triangles per level.
+    /// The number of triangles of each level of detail.
     pub(super) fn triangles(&self) -> Vec<u32> {
         let of_level = |level: usize| {
             let draws = self.draws.chunks(OBJECT_LEVELS as usize);
@@ -232,12 +233,12 @@ impl Object {
         self.level_of_detail.rank_on_device(self.is_ranked)
     }
 
-    /// Number of parts.
+    /// Number of the object's parts, each with its own draws.
     fn parts(&self) -> usize {
         self.draws.len() / OBJECT_LEVELS as usize
     }
 
-    /// Draws of all lists of a chunk per part, with instance counts of 0.
+    /// The draws of a chunk for all of its lists, [`OBJECT_LISTS`] for each part. Their instance counts are 0.
     fn draws_of_lists(&self) -> impl Iterator<Item = SceneDraw> {
         let levels = self.errors.len();
         let lists = if self.level_of_detail.transition.fades() { 4 * levels } else { 2 * levels };
@@ -247,13 +248,13 @@ impl Object {
         })
     }
 
-    /// Sets whether motion history is kept, once the object is refreshed.
+    /// Sets whether motion history is kept. It takes effect when the object is refreshed.
     pub(super) fn keep_last(&mut self, keeps: bool) {
         self.instances.keep_last(keeps);
         self.kind.keep_last(keeps);
     }
 
-    /// Largest number of its draws in one view and one layer.
+    /// The largest number of draws of the object in one view and one layer.
     pub(super) fn draws(&self) -> usize {
         let parts: usize = self.drawables().map(|drawable| drawable.part_count()).sum();
         let sides = self.instances.sides().into_iter().filter(|is_listed| *is_listed).count();
@@ -261,17 +262,17 @@ impl Object {
         passes * sides * parts * self.errors.len()
     }
 
-    /// An instance's index in the scene's instance buffers.
+    /// The index of an instance in the scene's instance buffers. `index` is the instance's index in the object.
     pub(super) fn place(&self, index: u32) -> Option<usize> {
         Some(self.chunk_of(index)?.place(index as usize))
     }
 
-    /// The chunk that holds an instance.
+    /// The chunk that draws an instance.
     pub(super) fn chunk_of(&self, index: u32) -> Option<&Chunk> {
         self.chunks.iter().find(|chunk| chunk.slots.contains(&(index as usize)))
     }
 
-    /// The object as a character, if it is one.
+    /// The object as a character; `None` for other kinds.
     pub(super) fn character(&self) -> Option<&Character> {
         self.kind.downcast()
     }
@@ -281,18 +282,18 @@ impl Object {
         self.kind.downcast_mut()
     }
 
-    /// The drawables, chunk by chunk.
+    /// All drawables of the object, chunk by chunk.
     pub(super) fn drawables(&self) -> impl Iterator<Item = &dyn Drawable> {
         self.chunks.iter().flat_map(|chunk| chunk.drawables.iter().map(|drawable| &**drawable))
     }
 
-    /// Number of instances the object has room for.
+    /// Number of instances for which the object has memory.
     pub(crate) fn capacity(&self) -> usize {
         self.instances.capacity()
     }
 }
 
-/// One chunk with all instances.
+/// A single chunk that holds all instances.
 fn whole(instances: &Instances, (drawables, draws): Drawn) -> (Vec<Chunk>, Vec<SceneDraw>) {
     (vec![Chunk::new(0..instances.capacity(), drawables)], draws)
 }

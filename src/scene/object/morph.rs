@@ -4,12 +4,12 @@ use super::Object;
 use crate::lod::transition::Transition;
 
 impl Object {
-    /// Whether its levels can geomorph.
+    /// Whether the object's levels of detail can geomorph.
     pub(in crate::scene) fn can_morph(&self) -> bool {
         self.errors.len() > 1 && self.drawables().any(|drawable| drawable.can_morph())
     }
 
-    /// Passes the transition on to the drawables.
+    /// Tells all drawables whether the object's levels geomorph, which decides their pipelines.
     pub(in crate::scene) fn mark_transition(&mut self) {
         let morphed = self.level_of_detail.transition == Transition::Geomorph;
         let drawables = self.chunks.iter_mut().flat_map(|chunk| &mut chunk.drawables);

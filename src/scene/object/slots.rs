@@ -1,4 +1,4 @@
-//! A scene's objects, by handle.
+//! Access to a scene's objects by handle.
 
 use crate::scene::handles::{InstanceId, ObjectId, Slots};
 use crate::scene::object::Object;
@@ -19,7 +19,7 @@ impl Slots<Object> {
         object.instances.contains([instance.index, instance.generation]).then_some(object)
     }
 
-    /// All objects with their handles, slot by slot.
+    /// All objects with their handles, in the order of their slots.
     pub fn each(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
         let scene = self.scene();
         self.numbered()

@@ -13,12 +13,12 @@ use crate::scene::caller_text::{CallerText, without_comments};
 use crate::scene::wgsl::entries::{KindText, OutputText, composed, exports, fragments};
 use crate::scene::wgsl::prefix::{declared_names, prefixed_with};
 
-/// Index of the bind group with a kind's own resources.
+/// Index of the bind group with the resources of a caller-defined kind.
 const GROUP: u32 = 2;
 
 /// The shader of a [`Kind`](crate::scene::kind::Kind): the caller's checked WGSL, with entry points for every layer.
 ///
-/// Clones share one shader, and so share the pipelines that renderers compile.
+/// Clones share one shader, and the pipelines that renderers compile from it.
 #[derive(Debug, Clone)]
 pub struct KindProgram(Arc<Inner>);
 
@@ -28,7 +28,7 @@ struct Inner {
     text: String,
     /// Names that the text declares.
     declared: Vec<String>,
-    /// Whether vertices move in model space.
+    /// Whether vertices move in model space, so that the text has a function for the last position.
     moves: bool,
     entries: Vec<wgpu::BindGroupLayoutEntry>,
 }
@@ -48,36 +48,37 @@ impl Hash for KindProgram {
 }
 
 impl KindProgram {
-    /// Checks a text and generates its entry points. No device is needed, and nothing is compiled.
+    /// Checks the caller's WGSL (`source`) and generates entry points for it. No device is needed, and nothing is
+    /// compiled.
     ///
-    /// `name` is the prefix of every name that the text declares, such as `grass_bend`, `GRASS_HEIGHT` and `GrassBlade` for
-    /// `grass`. The text has two functions, and a third if vertices move in model space:
+    /// All names that the text declares begin with `name`. For the name `grass`, examples are `grass_bend`,
+    /// `GRASS_HEIGHT` and `GrassBlade`. The text must have two functions, and a third if vertices move in model space:
     ///
     /// ```wgsl
-    /// // Where an instance has a vertex: the entry says which instance, the vertex is an index of the index buffer.
+    /// // The vertex of an instance. `entry` identifies the instance; `vertex` is a value of the index buffer.
     /// fn NAME_place(entry: u32, vertex: u32) -> relievo_SceneVertex
-    /// // What is seen of a fragment. It must not discard, and runs in uniform control flow.
+    /// // The visible surface at a fragment. This function must not discard, and runs in uniform control flow.
     /// fn NAME_surface(in: relievo_SceneFragment) -> Surface
-    /// // Where the vertex was in the last frame, relative to the corner of the view's cell.
+    /// // The position of the vertex in the last frame, relative to the corner of the view's cell.
     /// fn NAME_last_position(entry: u32, vertex: u32) -> vec3<f32>
     /// ```
     ///
-    /// Its resources are in bind group 2: uniform buffers, read-only storage buffers, textures and samplers. The crate's
-    /// own names start with `relievo_`:
+    /// The text may bind resources in bind group 2: uniform buffers, read-only storage buffers, textures and samplers.
+    /// The text can use these names of the crate, which start with `relievo_`:
     ///
     /// ```wgsl
     /// // A vertex. Positions are relative to the corner of the view's cell.
     /// struct relievo_SceneVertex {
     ///     position: vec3<f32>,
     ///     normal: vec3<f32>,   // outwards, of any length but 0
-    ///     tangent: vec4<f32>,  // along u; w: the bitangent along v is w · normal × tangent, of unit vectors
+    ///     tangent: vec4<f32>,  // xyz: along u; w: for unit vectors, the bitangent along v is w · normal × tangent
     ///     uv: vec4<f32>,       // two sets of texture coordinates
-    ///     values: vec4<f32>,   // the kind's own, interpolated
-    ///     words: vec3<u32>,    // the kind's own, the same at all vertices of a triangle
+    ///     values: vec4<f32>,   // free for the kind; interpolated
+    ///     words: vec3<u32>,    // free for the kind; the same at all vertices of a triangle
     ///     side: f32,           // -1 if the placement mirrors, else 1
     /// }
     ///
-    /// // A fragment: what its vertices have, interpolated, and more.
+    /// // A fragment: the interpolated values of its vertices, and facts about its instance.
     /// struct relievo_SceneFragment {
     ///     position: vec3<f32>,
     ///     normal: vec3<f32>,
@@ -86,7 +87,7 @@ impl KindProgram {
     ///     values: vec4<f32>,
     ///     words: vec3<u32>,
     ///     instance: u32,             // counted from the object's first one
-    ///     last_position: vec3<f32>,  // in the last frame, where the layer needs motion; else `position`
+    ///     last_position: vec3<f32>,  // the position in the last frame if the layer needs motion; else `position`
     ///     clip: vec4<f32>,           // the position in the target in pixels, and the depth
     ///     is_outside: bool,          // whether the outer side of the triangle is seen
     ///     level: u32,                // level of detail of the instance, from 0 for the finest
@@ -101,16 +102,17 @@ impl KindProgram {
     /// | `relievo_scene_last_placed(entry, position) -> vec3<f32>` | position of a model-space point in the last frame |
     /// | `relievo_scene_last_rigid(entry, position) -> vec3<f32>` | last frame's position of a placed point that does not move in model space |
     ///
-    /// `relievo_view` is the view: `clip_from_world`, `eye`, `light`. `Surface` is defined in
+    /// `relievo_view` holds the uniforms of the view: `clip_from_world`, `eye`, `light`. `Surface` is defined in
     /// [`Renderer::with_shading`](crate::render::Renderer::with_shading).
     ///
-    /// The crate uses a part of WebGPU's default limits per stage: 3 storage buffers (4 in the vertex stage), 2 uniform
-    /// buffers, 1 texture and 1 sampler. A kind and the caller's shading share the rest: 5 storage buffers, 10 uniform
-    /// buffers, 15 textures and 15 samplers in the fragment stage.
+    /// WebGPU limits the bindings of each shader stage. Of the default limits, the crate uses 3 storage buffers (4 in
+    /// the vertex stage), 2 uniform buffers, 1 texture and 1 sampler. A kind and the caller's shading share the others:
+    /// 5 storage buffers, 10 uniform buffers, 15 textures and 15 samplers in the fragment stage.
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake, with the path `kind:LINE:COLUMN`, line and column counted from 1. Also for a
-    /// name with anything but lower-case letters, digits and underscores (`kind.name`).
+    /// [`InputError`] for the first mistake in the text. The error's path is `kind:LINE:COLUMN`, with line and column
+    /// counted from 1. [`InputError`] also for a name (`kind.name`) with anything but lower-case letters, digits and
+    /// underscores.
     pub fn new(name: &str, source: &str) -> Result<Self, InputError> {
         let is_letter =
             |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_';
@@ -122,7 +124,7 @@ impl KindProgram {
         let declared = declared_names(&code);
         let declares = |what: &str| declared.contains(&format!("{name}_{what}"));
         let kind = KindText { name, blends: true, deep: true, moves: declares("last_position") };
-        // Comments are blanked so that nothing in them is taken for code; all code keeps its place.
+        // Comments are blanked, so that nothing in them is taken for code. All code keeps its line and column.
         let text = format!("{code}\n{}", composed(&kind, SCENE_CORE, SCENE_OUTPUTS));
         let own = CallerText { path: "kind", source, text: &text };
         own.check_declarations(name)?;
@@ -140,12 +142,12 @@ impl KindProgram {
         Ok(Self(Arc::new(Inner { name: name.to_owned(), text, declared, moves, entries })))
     }
 
-    /// The name.
+    /// The kind's name, as given to [`KindProgram::new`].
     pub fn name(&self) -> &str {
         &self.0.name
     }
 
-    /// The WGSL, which ends with the function `shade`.
+    /// The complete WGSL of the kind, which ends with the function `shade`.
     pub(crate) fn text(&self) -> &str {
         &self.0.text
     }
@@ -155,20 +157,20 @@ impl KindProgram {
         &self.0.declared
     }
 
-    /// Input of the generator of entry points.
+    /// Facts about the kind from which its entry points are generated.
     pub(crate) fn kind(&self) -> KindText<'_> {
         KindText { name: &self.0.name, blends: true, deep: true, moves: self.0.moves }
     }
 
-    /// A kind that draws nothing.
+    /// A program without bindings, which draws nothing.
     pub(crate) fn least() -> Result<Self, InputError> {
         Self::new("least", LEAST)
     }
 
-    /// The layout of bind group 2: the resources that the text binds, visible to the stages that use them.
+    /// The layout of bind group 2: all resources that the text binds, each visible to the shader stages that use it.
     ///
     /// # Errors
-    /// [`GpuError`] for more than the device's limits.
+    /// [`GpuError`] if the text binds more resources than the device allows.
     pub fn layout(&self, gpu: &Gpu) -> Result<wgpu::BindGroupLayout, GpuError> {
         gpu.scoped(|| {
             gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -178,10 +180,10 @@ impl KindProgram {
         })
     }
 
-    /// Creates bind group 2 for a [`KindPart`](crate::scene::kind::KindPart) from its entries, in any order.
+    /// Creates bind group 2 for a [`KindPart`](crate::scene::kind::KindPart). The entries may be in any order.
     ///
     /// # Errors
-    /// [`GpuError`] for a resource that does not fit.
+    /// [`GpuError`] for a resource that does not fit its binding.
     pub fn bind(&self, gpu: &Gpu, entries: &[wgpu::BindGroupEntry<'_>]) -> Result<wgpu::BindGroup, GpuError> {
         let layout = self.layout(gpu)?;
         let descriptor = wgpu::BindGroupDescriptor { label: Some(&self.0.name), layout: &layout, entries };
@@ -189,7 +191,7 @@ impl KindProgram {
     }
 }
 
-/// The text of a kind without bindings.
+/// WGSL of a kind that draws nothing and binds no resources.
 pub(crate) const LEAST: &str = "
 fn least_place(entry: u32, vertex: u32) -> relievo_SceneVertex {
     return relievo_scene_placed(entry, vec3<f32>(), vec3<f32>(), vec4<f32>(), vec4<f32>());
@@ -199,7 +201,8 @@ fn least_surface(in: relievo_SceneFragment) -> Surface {
 }
 ";
 
-/// The shader of a kind with the caller's output: the output's text first, then the entry points for it.
+/// The shader of a kind for an output that the caller defines: the text of the output, then the kind's text with entry
+/// points for that output.
 pub(crate) fn with_output(program: &Program<'_>, source: &str, output: &OutputText) -> String {
     let Program { text, kind, is_own } = program;
     let mut kept = vec![output.targets(), format!("{}_write", output.name)];
@@ -209,14 +212,15 @@ pub(crate) fn with_output(program: &Program<'_>, source: &str, output: &OutputTe
     format!("{source}\n{}", prefixed_with(text, &fragments(kind, output), &kept))
 }
 
-/// A shader, the input of its generator of entry points, and whether the kind is the caller's.
+/// The shader of a kind: its WGSL (`text`), the facts from which entry points are generated (`kind`), and whether the
+/// caller wrote it (`is_own`).
 pub(crate) struct Program<'a> {
     pub text: &'a str,
     pub kind: KindText<'a>,
     pub is_own: bool,
 }
 
-/// The signature of a function that the text must have.
+/// The signature of a function that the caller's text must have, for error messages.
 fn signature(name: &str, what: &str) -> String {
     let rest = match what {
         "place" => "(entry: u32, vertex: u32) -> relievo_SceneVertex",
@@ -227,8 +231,8 @@ fn signature(name: &str, what: &str) -> String {
 }
 
 impl CallerText<'_> {
-    /// Explains an error of naga. A type mismatch outside the caller's text is in an entry point that calls a function with
-    /// another signature.
+    /// Makes an error of naga understandable. A type mismatch outside the caller's text is in a generated entry point.
+    /// The cause is a function of the caller with a wrong signature, which that entry point calls.
     fn explained(&self, name: &str, error: InputError) -> InputError {
         let end = self.refused(std::iter::empty(), String::new());
         let is_of_types = ["Call to", "type"].iter().any(|word| error.bound.contains(word));
@@ -241,7 +245,8 @@ impl CallerText<'_> {
     }
 }
 
-/// Layout entries of bind group 2: the resources that the text binds, visible to the stages that use them.
+/// Layout entries of bind group 2: all resources that the caller's text binds, each visible to the shader stages that
+/// use it.
 fn bound(
     own: &CallerText<'_>,
     module: &Module,
@@ -279,7 +284,7 @@ fn bound(
     Ok(entries)
 }
 
-/// The binding type of a variable; `None` if kinds cannot bind it.
+/// The binding type of a variable; `None` if kinds cannot bind variables of that type.
 fn layout_type(
     module: &Module,
     info: &ModuleInfo,
@@ -334,7 +339,7 @@ fn layout_type(
 mod tests {
     use super::*;
 
-    /// A kind that uses every documented name, in order.
+    /// The test's kind uses every documented name, and every field in the documented order.
     #[test]
     fn every_name_of_the_documentation_is_there() {
         let text = "

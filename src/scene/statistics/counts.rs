@@ -1,4 +1,4 @@
-//! Counts of the work that characters took, copied from lists that kernels write anyway.
+//! Counts of the characters' work, copied from dispatch arguments that kernels write anyway.
 
 use std::sync::Arc;
 
@@ -8,16 +8,16 @@ use crate::scene::character::Character;
 use crate::scene::handles::{ObjectId, Slots};
 use crate::scene::object::Object;
 
-/// Byte offset of the number in `[workgroups x, y, z, number]`.
+/// Byte offset of the number of bones or clusters in dispatch arguments of the form `[workgroups x, y, z, number]`.
 const NUMBER: u64 = 12;
 
-/// A frame in flight: its number, and for each character the numbers of its meshes and chunks.
+/// Facts about a frame in flight: its number, and each character's number of meshes and number of chunks.
 type About = (u64, Arc<[(ObjectId, [usize; 2])]>);
 
 /// Readback of the counts of a scene's characters.
 #[derive(Debug)]
 pub(in crate::scene) struct SceneCounts {
-    /// The layout version that it was made for.
+    /// Version of the layout for which the buffers were allocated.
     pub version: u64,
     characters: Arc<[(ObjectId, [usize; 2])]>,
     ring: ReadbackRing<About>,
@@ -34,7 +34,7 @@ impl SceneCounts {
         Ok(Self { version, characters, ring, last: None })
     }
 
-    /// Records the copies of a frame's counts, if a buffer is free.
+    /// Records the copies of a frame's counts, if a readback buffer is free.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64, objects: &Slots<Object>) {
         self.arrive();
         self.ring.record(encoder, (frame, self.characters.clone()), |encoder, to| {
@@ -46,13 +46,13 @@ impl SceneCounts {
         });
     }
 
-    /// The statistics of the last frame that has arrived.
+    /// The statistics of the last frame whose counts have arrived.
     pub fn last(&mut self) -> Option<&SceneStatistics> {
         self.arrive();
         self.last.as_ref()
     }
 
-    /// Discards frames that were dropped.
+    /// Discards the readbacks of frames whose encoders were dropped.
     pub fn invalidate(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
         self.ring.invalidate(gpu)
     }

@@ -11,19 +11,19 @@ use crate::Error;
 use crate::scene::Scene;
 use crate::scene::handles::ObjectId;
 
-/// Largest number of frames whose statistics are in flight. If all are taken, a frame is not counted.
+/// Largest number of frames whose statistics are in flight. If that many are in flight, the next frame is not counted.
 pub(super) const FRAMES: usize = 8;
 
-/// Work that a scene's characters took in a frame.
+/// The work of a scene's characters in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneStatistics {
-    /// Number of the frame: how many frames the scene had recorded before it.
+    /// Number of the frame: the number of frames that the scene recorded before it.
     pub frame: u64,
     /// One entry per character, in the order in which they were added.
     pub characters: Vec<CharacterStatistics>,
 }
 
-/// Work that one character took in a frame, all instances together.
+/// The work of one character in one frame, summed over its instances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CharacterStatistics {
     /// The character.
@@ -37,89 +37,91 @@ pub struct CharacterStatistics {
 /// GPU time of each stage of a frame, in milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct StageTimes {
-    /// Number of the frame, as [`SceneStatistics::frame`].
+    /// Number of the frame, counted as in [`SceneStatistics::frame`].
     #[serde(skip)]
     pub frame: u64,
-    /// Culling, level selection and list building, of all views.
+    /// Time of culling, level selection and list building, for all views together.
     pub select: f64,
-    /// Choosing the bones to sample, and listing them.
+    /// Time of choosing the bones to sample, and of listing them.
     pub gate: f64,
-    /// Sampling of bones, and weights of morph targets.
+    /// Time of sampling bones, and of computing the weights of morph targets.
     pub sample: f64,
-    /// Model matrices, and the placements of attached meshes.
+    /// Time of computing model matrices, and the placements of attached meshes.
     pub local_to_model: f64,
-    /// Pages, palettes, morph targets and skinning.
+    /// Time of assigning pages and computing palettes, of applying morph targets, and of skinning.
     pub skin: f64,
 }
 
 impl StageTimes {
-    /// The sum of all stages.
+    /// The sum of the times of all stages, in milliseconds.
     pub fn total(&self) -> f64 {
         self.select + self.gate + self.sample + self.local_to_model + self.skin
     }
 }
 
-/// What a view drew in a frame.
+/// The instances and triangles that a view drew in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ViewStatistics {
-    /// Number of the frame, as [`SceneStatistics::frame`].
+    /// Number of the frame, counted as in [`SceneStatistics::frame`].
     pub frame: u64,
-    /// Largest possible error of anything, in pixels: that of [`Quality`](crate::scene::Quality), or of the object whose
-    /// levels of detail were coarser: by a budget, by its own settings, or for lack of memory ([`Scene::lod_bias`]).
+    /// Upper bound of the error of all drawn instances, in pixels. It is the limit of the view's
+    /// [`Quality`](crate::scene::Quality), unless an object's levels of detail were coarser. An object's levels may be
+    /// coarser because of a budget, the object's own settings, or a lack of memory ([`Scene::lod_bias`]).
     pub pixels: f32,
-    /// The budget of triangles, if the view has one.
+    /// The effect of the view's budget of triangles; `None` if the view has no budget.
     pub budget: Option<BudgetStatistics>,
     /// One entry per object, in the order in which they were added.
     pub objects: Vec<ObjectStatistics>,
 }
 
-/// What a budget of triangles did in a frame ([`Quality::triangles`](crate::scene::Quality::triangles)).
+/// The effect of a budget of triangles in one frame ([`Quality::triangles`](crate::scene::Quality::triangles)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BudgetStatistics {
-    /// Largest factor of the metric of any rank, 1 or more.
+    /// The largest factor that the budget applied to objects of any rank, at least 1. The factor multiplies the metric
+    /// by which levels of detail are chosen.
     pub factor: f32,
-    /// Whether even the coarsest levels had too many triangles.
+    /// Whether even the coarsest levels of detail had too many triangles.
     pub is_missed: bool,
-    /// Whether all fades ended, because both levels of each had too many triangles.
+    /// Whether the budget ended all fades, because the two levels of each fade had too many triangles.
     pub fades_ended: bool,
 }
 
-/// What a view drew of one object.
+/// The instances and triangles of one object that a view drew in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectStatistics {
     /// The object.
     pub object: ObjectId,
-    /// Largest possible error of its instances, in pixels.
+    /// Upper bound of the error of the object's instances, in pixels.
     pub pixels: f32,
     /// One entry per level of detail, the finest first.
     pub levels: Vec<LevelStatistics>,
 }
 
-/// What a view drew of one level of an object.
+/// The instances and triangles of one level of detail that a view drew in one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LevelStatistics {
     /// Number of drawn instances.
     pub instances: u32,
-    /// Number of triangles in these instances, back faces included.
+    /// Number of triangles of these instances, including back faces.
     pub triangles: u64,
 }
 
 impl ObjectStatistics {
-    /// Number of drawn instances, all levels together.
+    /// Number of drawn instances, summed over all levels of detail.
     pub fn instances(&self) -> u32 {
         self.levels.iter().map(|level| level.instances).sum()
     }
 
-    /// Number of drawn triangles, all levels together.
+    /// Number of drawn triangles, summed over all levels of detail.
     pub fn triangles(&self) -> u64 {
         self.levels.iter().map(|level| level.triangles).sum()
     }
 }
 
 impl Scene {
-    /// Turns statistics on or off, from the next frame on. They cost each frame a copy of a few bytes per object, view and
-    /// character. On a device with timestamps, each stage also takes a compute pass of its own. The first such frame
-    /// allocates memory.
+    /// Turns statistics on or off, from the next frame on. In each frame, statistics cost a copy of a few bytes per
+    /// object, view and character. On a device with timestamps, each stage also takes a compute pass of its own. The
+    /// first frame with statistics allocates memory.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -147,18 +149,18 @@ impl Scene {
         Ok(())
     }
 
-    /// The statistics of the last frame whose counts have arrived. `None` before the first, and unless
-    /// [`Scene::set_statistics`] turned them on. The call does not wait: counts arrive when the device has executed the
-    /// frame and is polled, which each submission does.
+    /// The statistics of the last frame whose counts have arrived. `None` if statistics are off
+    /// ([`Scene::set_statistics`]), and before the first counts arrive. The call does not wait. Counts arrive when the
+    /// device has executed the frame and is polled; each submission polls the device.
     pub fn statistics(&mut self) -> Option<&SceneStatistics> {
         self.counts.as_mut()?.last()
     }
 
-    /// The stage times of the last frame whose times have arrived. `None` before the first, unless
-    /// [`Scene::set_statistics`] turned them on, and on a device without `TIMESTAMP_QUERY`.
+    /// The stage times of the last frame whose times have arrived. `None` if statistics are off
+    /// ([`Scene::set_statistics`]), before the first times arrive, and on a device without `TIMESTAMP_QUERY`.
     ///
-    /// The clock is the device's. A software adapter executes a pass only when its results are needed. Its clock then hides
-    /// the driver's work before and after, mainly compilation and waiting for threads.
+    /// The device's clock measures the times. A software adapter executes a pass only when its results are needed. The
+    /// times then leave out the driver's work before and after the pass, mainly compilation and waiting for threads.
     pub fn stage_times(&mut self) -> Option<&StageTimes> {
         self.timer.as_mut()?.last()
     }

@@ -1,4 +1,4 @@
-//! Stage times of a frame, from timestamps around the stages' compute passes.
+//! Measures the stages of a frame by timestamps around the stages' compute passes.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,27 +14,27 @@ const STAMPS: u32 = 2 * STAGES as u32;
 #[derive(Debug)]
 pub(in crate::scene) struct StageTimer {
     sets: Vec<Queries>,
-    /// Index of the set that the current frame writes.
+    /// Index in `sets` of the timestamps that the current frame writes; `None` if no set is free.
     current: Option<usize>,
     ring: ReadbackRing<u64>,
-    /// Milliseconds per tick.
+    /// Milliseconds per tick of the device's clock.
     period: f64,
     last: Option<StageTimes>,
 }
 
-/// The timestamps of a frame. A later frame resolves them, after this one was executed. Some drivers resolve zeros within
-/// the same submission, and no driver resolves queries that were never written.
+/// The timestamps of a frame. A later frame resolves them, after the device has executed the frame that wrote them.
+/// Some drivers resolve zeros within the same submission, and no driver resolves queries that were never written.
 #[derive(Debug)]
 struct Queries {
     set: wgpu::QuerySet,
     resolved: wgpu::Buffer,
-    /// Frame that wrote the set; `None` once it is resolved.
+    /// Number of the frame that wrote the set; `None` once the set is resolved.
     frame: Option<u64>,
     is_done: Arc<AtomicBool>,
 }
 
 impl StageTimer {
-    /// A timer; `None` if the device has no timestamps.
+    /// Creates a timer; `None` if the device has no timestamps.
     pub fn new(gpu: &Gpu) -> Result<Option<Self>, GpuError> {
         if !gpu.device().features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Ok(None);
@@ -45,7 +45,7 @@ impl StageTimer {
         Ok(Some(Self { sets, current: None, ring, period, last: None }))
     }
 
-    /// Begins a frame: resolves the timestamps of executed frames.
+    /// Begins a frame. Resolves the timestamps of frames that the device has executed.
     pub fn begin(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64) {
         self.arrive();
         let ring = &mut self.ring;
@@ -69,7 +69,7 @@ impl StageTimer {
         }
     }
 
-    /// The timestamp writes of a stage in the current frame.
+    /// The timestamp writes for the compute pass of a stage in the current frame; `None` if the frame is not timed.
     pub fn stage(&self, stage: usize) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         let first = 2 * stage as u32;
         Some(wgpu::ComputePassTimestampWrites {
@@ -79,13 +79,13 @@ impl StageTimer {
         })
     }
 
-    /// The times of the last frame that has arrived.
+    /// The times of the last frame whose timestamps have arrived.
     pub fn last(&mut self) -> Option<&StageTimes> {
         self.arrive();
         self.last.as_ref()
     }
 
-    /// Discards frames that were dropped.
+    /// Discards the timestamps of frames whose encoders were dropped.
     pub fn invalidate(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
         for queries in self.sets.iter_mut().filter(|queries| queries.frame.is_some()) {
             *queries = Queries::new(gpu)?;

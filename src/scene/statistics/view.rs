@@ -1,4 +1,4 @@
-//! Counts of a view's draws, copied from their indirect arguments.
+//! Counts of a view's instances and triangles, copied from the arguments of its indirect draws.
 
 use std::sync::Arc;
 
@@ -9,21 +9,22 @@ use crate::scene::handles::Slots;
 use crate::scene::layout::{Counted, CountedObject};
 use crate::scene::object::Object;
 
-/// A frame in flight.
+/// Facts about a frame whose counts are in flight.
 #[derive(Debug)]
 struct About {
     frame: u64,
     counted: Arc<Counted>,
     pixels: f32,
-    /// Smallest focal length in pixels of the view's perspective cameras; `None` if there is none.
+    /// Smallest focal length of the view's perspective cameras, in pixels; `None` if the view has no perspective
+    /// camera.
     focal: Option<f32>,
-    /// LOD bias per object; empty if all are 1.
+    /// LOD bias of each object; empty if all biases are 1.
     lod_bias: Vec<f32>,
     /// Whether the view has a budget of triangles.
     has_budget: bool,
 }
 
-/// Readback of a view's counts.
+/// Readback of the counts of one view.
 #[derive(Debug)]
 pub(in crate::scene) struct ViewCounts {
     counted: Arc<Counted>,
@@ -32,19 +33,19 @@ pub(in crate::scene) struct ViewCounts {
 }
 
 impl ViewCounts {
-    /// Allocates buffers for a view's draws.
+    /// Allocates readback buffers for the arguments of a view's draws.
     pub fn new(gpu: &Gpu, counted: &Arc<Counted>, draws: &wgpu::Buffer) -> Result<Self, GpuError> {
         let size = draws.size() + size_of::<BudgetState>() as u64;
         let ring = ReadbackRing::new(gpu, "statistics of a view", FRAMES, size)?;
         Ok(Self { counted: counted.clone(), ring, last: None })
     }
 
-    /// Whether it was made for these objects.
+    /// Whether the buffers were made for these objects.
     pub fn is_of(&self, counted: &Arc<Counted>) -> bool {
         Arc::ptr_eq(&self.counted, counted)
     }
 
-    /// Records the copy of a frame's draws, if a buffer is free.
+    /// Records the copy of the draws' arguments in a frame, if a readback buffer is free.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -62,7 +63,7 @@ impl ViewCounts {
         });
     }
 
-    /// The statistics of the last frame that has arrived.
+    /// The statistics of the last frame whose counts have arrived.
     pub fn last(&mut self) -> Option<&ViewStatistics> {
         self.arrive();
         self.last.as_ref()
@@ -96,7 +97,7 @@ impl ViewCounts {
 }
 
 impl CountedObject {
-    /// Instances and triangles in the draws of one level.
+    /// The instances and triangles in all draws of one level of detail.
     fn level(&self, level: u32, draws: &[SceneDraw]) -> LevelStatistics {
         let mut found = LevelStatistics::default();
         let passes = if self.fades { 2 } else { 1 };
@@ -113,9 +114,9 @@ impl CountedObject {
     }
 }
 
-/// The error in pixels when the allowed displacement for `pixels` is multiplied by `factor`. On the axis at depth z, that
-/// displacement is d = z · pixels / (focal + pixels). A displacement of e is at most focal · e / (z − e) pixels on the
-/// screen.
+/// The error in pixels if the displacement that `pixels` allows is multiplied by `factor`. On the view axis at depth z,
+/// the displacement that `pixels` allows is d = z · pixels / (focal + pixels). A displacement of e is at most focal · e
+/// / (z − e) pixels on the screen.
 fn coarser_pixels(pixels: f32, factor: f32, focal: Option<f32>) -> f32 {
     match focal {
         _ if factor <= 1.0 => pixels,
@@ -135,7 +136,7 @@ mod tests {
     fn coarser_levels_are_more_pixels_off() {
         assert_eq!(coarser_pixels(1.0, 1.0, Some(100.0)), 1.0);
         assert_eq!(coarser_pixels(1.0, 3.0, None), 3.0);
-        // 3/101 of the depth: 100 · 3/98 pixels.
+        // A displacement of 3/101 of the depth is 100 · 3/98 pixels.
         assert!((coarser_pixels(1.0, 3.0, Some(100.0)) - 300.0 / 98.0).abs() < 1e-5);
         assert_eq!(coarser_pixels(1.0, 200.0, Some(100.0)), f32::INFINITY);
     }

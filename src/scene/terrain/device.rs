@@ -1,4 +1,4 @@
-//! Terrain on the device: its heights, generated or the caller's, and its drawables.
+//! Terrain on the device: its drawables, and its heights, which the scene generates or the caller provides.
 
 use super::drawable::{TerrainDrawable, TerrainGeometry, patch_indices};
 use super::morphing::Morphing;
@@ -21,11 +21,11 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::texture::TerrainTexture;
 use crate::{Error, InputError};
 
-/// Samples around each generated patch; shading reads one.
+/// Number of samples beyond each edge of a generated patch. Shading reads one of them.
 pub(super) const MARGIN: u32 = 1;
 
-/// Makes terrain: host data, one instance per patch, and drawables. Each part of the heights that one binding holds becomes
-/// a chunk.
+/// Creates terrain: data on the host, one instance per patch, and drawables. The heights are in parts that each fit one
+/// binding of the device. Each part becomes a chunk.
 pub(in crate::scene) async fn made(
     gpu: &Gpu,
     layouts: &SceneLayouts,
@@ -82,7 +82,7 @@ pub(in crate::scene) async fn made(
     Ok((terrain, instances, (chunks, draws)))
 }
 
-/// Generates the heights of a recipe.
+/// Generates the heights of patches by a recipe.
 async fn generated(gpu: &Gpu, recipe: &Recipe, patches: &[[i32; 2]]) -> Result<Vec<Fields>, Error> {
     if patches.is_empty() {
         return Err(InputError::new("patches", "none", "must be at least one").into());
@@ -92,7 +92,7 @@ async fn generated(gpu: &Gpu, recipe: &Recipe, patches: &[[i32; 2]]) -> Result<V
     generator.generate_async(gpu, patches, MARGIN, &mut |_| ()).await
 }
 
-/// The drawable of one part's patches. `first` is the index of its first patch.
+/// The drawable of the patches `shown` in one part of the heights. `first` is the index of the first of these patches.
 fn drawable(
     (gpu, layouts): (&Gpu, &SceneLayouts),
     (source, zones, triangles): (&TerrainSource, &Materials, &Buffer<u32>),
@@ -128,7 +128,7 @@ fn drawable(
     Ok(TerrainDrawable::new(gpu, layouts, geometry, source.style)?)
 }
 
-/// Patches in shader format; the first one has the first window.
+/// The patches in shader format. Patch i of the list shows height window i.
 pub(in crate::scene) fn listed(config: &TerrainConfig, patches: &[[i32; 2]]) -> Vec<TerrainPatch> {
     let (edge, tiles) = (config.patch_size as i32 - 1, config.tiles_per_patch());
     let patch = |(window, patch): (u32, &[i32; 2])| TerrainPatch {

@@ -14,11 +14,11 @@ use crate::terrain::materials::Materials;
 pub(crate) struct TerrainGeometry {
     /// Parameters shared by all patches.
     pub params: Uniform<TerrainParams>,
-    /// Height windows in 1/65536 units.
+    /// Height windows: the heights of each patch and of the samples around it, in 1/65536 world units.
     pub heights: Buffer<i32>,
-    /// Patch per instance.
+    /// The patch that each instance shows.
     pub patches: Buffer<TerrainPatch>,
-    /// Triangles of a patch: [`patch_indices`].
+    /// Triangle indices for one patch, which all patches share ([`patch_indices`]).
     pub indices: Buffer<u32>,
     /// Zones and their textures.
     pub zones: Materials,
@@ -27,16 +27,16 @@ pub(crate) struct TerrainGeometry {
 /// Terrain patches on the device.
 #[derive(Debug, Clone)]
 pub(crate) struct TerrainDrawable {
-    /// The buffers.
+    /// Device buffers of the terrain.
     pub geometry: TerrainGeometry,
-    /// Bind group 2; bind group 1 belongs to the view.
+    /// Bind group 2, with the terrain's buffers. Bind group 1 is different in each view.
     pub group: Group,
-    /// Specialization of its pipelines.
+    /// Specialization of the patches' pipelines.
     pub specialization: Specialization,
 }
 
 impl TerrainDrawable {
-    /// Binds the buffers. If one of them is replaced, all must be bound again.
+    /// Binds the buffers of a terrain. If a buffer is replaced later, all must be bound again.
     ///
     /// # Errors
     /// [`GpuError`].
@@ -97,7 +97,7 @@ mod tests {
     fn a_patch_has_the_diagonals_of_its_strips() {
         assert_eq!(patch_indices(2), [0, 2, 1, 1, 2, 3]);
         let size = 5;
-        // One strip per row of cells.
+        // The expected triangles: one strip per row of cells.
         let strip = |row: u32| {
             let corner = move |index: u32| (row + (index & 1)) * size + (index >> 1);
             (0..2 * size - 2).map(move |at| [0, 1, 2].map(|next| corner(at + next)))

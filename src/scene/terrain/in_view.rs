@@ -1,4 +1,4 @@
-//! Positions of a terrain's samples relative to a view.
+//! The reference point in a view from which shaders count a terrain's samples.
 
 use glam::{DVec3, IVec2, Vec3};
 
@@ -10,7 +10,7 @@ use crate::scene::object_kind::KindInView;
 use crate::scene::placement::Placement;
 use crate::shared::render::scene_terrain::TerrainView;
 
-/// A terrain in one view.
+/// The resources of a terrain for one view.
 #[derive(Debug)]
 pub(super) struct TerrainInView {
     uniform: Uniform<TerrainView>,
@@ -18,12 +18,13 @@ pub(super) struct TerrainInView {
     group: Group,
     /// World units between samples.
     spacing: f64,
-    /// Number of the object.
+    /// Number of the terrain's object.
     object: u32,
 }
 
 impl TerrainInView {
-    /// A terrain with `spacing` world units between samples; `object` is its object's number.
+    /// Creates a terrain's resources for a view. `spacing` is the distance between samples in world units, and `object`
+    /// is the number of the terrain's object.
     pub fn new(gpu: &Gpu, layouts: &SceneLayouts, spacing: f64, object: u32) -> Result<Self, GpuError> {
         let nowhere = TerrainView { base: IVec2::ZERO, rest: Vec3::ZERO, object };
         let uniform = Uniform::new(gpu, "terrain in a view", &nowhere)?;
@@ -36,10 +37,11 @@ impl KindInView for TerrainInView {
         &self.group
     }
 
-    /// Counts samples from the one nearest to the eye, so that `f32` stays precise there.
+    /// Stages the sample nearest to the eye. Shaders count samples from there, so that `f32` stays precise near the
+    /// eye.
     fn stage(&self, staged: &mut Staged, camera: &Camera) -> Result<(), Error> {
         let (spacing, corner, eye) = (self.spacing, Placement::corner(camera.cell), camera.world());
-        // The cast saturates; samples that far away are drawn imprecisely anyway.
+        // The cast to `i32` saturates. Samples that far from the origin are drawn imprecisely anyway.
         let base = IVec2::new((eye.x / spacing).round() as i32, (eye.z / spacing).round() as i32);
         let place = DVec3::new(f64::from(base.x) * spacing, 0.0, f64::from(base.y) * spacing);
         let view = TerrainView { base, rest: (place - corner).as_vec3(), object: self.object };

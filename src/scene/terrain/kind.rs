@@ -36,12 +36,12 @@ impl ObjectKind for Terrain {
         "terrain"
     }
 
-    /// The instances are the patches.
+    /// The caller does not spawn instances: the patches are the instances.
     fn is_spawned(&self) -> bool {
         false
     }
 
-    /// Terrain does not grow.
+    /// Terrain does not grow. Only the blend of two recipes is computed again.
     fn renew(&mut self, _: &Gpu, _: &SceneLayouts, _: usize, _: &mut Vec<Chunk>) -> Result<(), Error> {
         self.morphing.iter_mut().for_each(Morphing::refresh);
         Ok(())
@@ -80,7 +80,7 @@ impl ObjectKind for Terrain {
         self.morphing.iter_mut().for_each(|morphing| morphing.record(encoder));
     }
 
-    /// Both sides of the ground are visible, so both are hit.
+    /// The first hit of a ray on a patch. Both sides of the ground are visible, so both can be hit.
     fn hit(&self, instance: &Placed, ray: &UnitRay) -> Result<Option<SurfaceHit>, InputError> {
         let Some(patch) = self.source.patches.get(instance.index as usize) else { return Ok(None) };
         let [x, z] = patch.map(|index| f64::from(index) * self.edge);
@@ -89,7 +89,8 @@ impl ObjectKind for Terrain {
         Ok(hit.map(|hit| SurfaceHit { distance: hit.distance, normal: hit.normal }))
     }
 
-    /// Without known heights, the box of the patch's sphere.
+    /// A box between the lowest and the highest point of a patch. If the host does not know the heights, the box
+    /// contains the patch's bounding sphere.
     fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {
         let patch = self.source.patches.get(instance.index as usize);
         let extremes = patch.and_then(|patch| self.ground.extremes(*patch));

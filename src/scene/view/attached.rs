@@ -9,16 +9,16 @@ use crate::scene::handles::Slots;
 use crate::scene::layout::Layout;
 use crate::scene::object::Object;
 
-/// Jobs that place attached meshes: one per list of attachments.
+/// Compute jobs that place attached meshes, one for each list of attachments.
 #[derive(Debug, Default)]
 pub(in crate::scene) struct AttachedJobs {
-    /// Version of the attachment lists that the jobs are bound to.
+    /// Version of the attachment lists for which the jobs were prepared.
     version: u64,
     jobs: Vec<Job>,
 }
 
 impl View {
-    /// Prepares the jobs that place attached meshes, unless they are up to date.
+    /// Prepares the jobs that place attached meshes, if the lists of attachments have changed.
     pub(in crate::scene) fn fit_attached(
         &mut self,
         gpu: &Gpu,

@@ -12,7 +12,7 @@ use crate::scene::pacer::Pacer;
 use crate::scene::quality::Quality;
 use crate::{Error, InputError};
 
-/// The buffers of a budget, which several views may share.
+/// Device buffers of a budget of triangles, which several views may share.
 #[derive(Debug)]
 pub(in crate::scene) struct Budget {
     params: Uniform<BudgetParams>,
@@ -30,18 +30,18 @@ impl Budget {
     }
 }
 
-/// A view's part of its budget.
+/// A view's state of its budget of triangles.
 #[derive(Debug, Default)]
 pub(super) struct BudgetOfView {
     budget: Option<Arc<Budget>>,
-    /// The pacer of [`Quality::milliseconds`](crate::scene::Quality::milliseconds).
+    /// The controller that keeps [`Quality::milliseconds`](crate::scene::Quality::milliseconds).
     pacer: Option<Pacer>,
 }
 
 impl Scene {
-    /// Gives several views one budget: together they draw at most `triangles` triangles, and their levels of detail are
-    /// coarsened by the same factor. Record all of them in each frame. A view leaves the budget when its quality is set
-    /// ([`View::set_quality`]).
+    /// Gives several views one budget. Together they draw at most `triangles` triangles, and one factor makes their
+    /// levels of detail coarser. Record all of these views in each frame. A view leaves the budget when its quality is
+    /// set ([`View::set_quality`]).
     ///
     /// # Errors
     /// [`InputError`] for 0 triangles, and for a view of another scene; [`crate::gpu::GpuError`].
@@ -62,9 +62,10 @@ impl Scene {
 }
 
 impl View {
-    /// Reports the time that a frame with this view took, in milliseconds, for
-    /// [`Quality::milliseconds`](crate::scene::Quality::milliseconds): of the whole frame, or of what the view's triangles
-    /// cost. Without that limit, the call does nothing. Call it once a frame.
+    /// Reports how long a frame with this view took, in milliseconds. The view then adapts its triangles to
+    /// [`Quality::milliseconds`](crate::scene::Quality::milliseconds). The time may be that of the whole frame, or of
+    /// the work for the view's triangles. Call this once a frame. If the quality has no such limit, the call does
+    /// nothing.
     ///
     /// # Errors
     /// [`InputError`] for a time that is negative or not finite.
@@ -79,7 +80,7 @@ impl View {
         Ok(())
     }
 
-    /// The number of triangles that the view may draw; `None` without a limit.
+    /// The largest number of triangles that the view may draw at present; `None` without a limit.
     pub fn triangle_limit(&self) -> Option<u32> {
         let paced =
             self.budget.pacer.as_ref().and_then(Pacer::limit).filter(|_| self.quality.milliseconds.is_some());
@@ -89,7 +90,8 @@ impl View {
         }
     }
 
-    /// Takes another quality. The view leaves a shared budget.
+    /// Adapts the budget to a new quality. `had` is whether the previous quality had a budget. The view leaves a shared
+    /// budget.
     pub(super) fn budget_changed(&mut self, had: bool) {
         let is_shared = self.budget.budget.as_ref().is_some_and(|budget| Arc::strong_count(budget) > 1);
         if had != self.has_budget() || is_shared {
@@ -102,7 +104,7 @@ impl View {
         self.quality.triangles.is_some() || self.quality.milliseconds.is_some()
     }
 
-    /// The budget's buffers, which are made if there are none.
+    /// The buffers of the view's budget. They are created if they do not exist.
     pub(super) fn budget_on(&mut self, gpu: &Gpu) -> Result<Arc<Budget>, Error> {
         if self.budget.budget.is_none() {
             self.budget.budget = Some(Arc::new(Budget::new(gpu)?));
@@ -110,7 +112,7 @@ impl View {
         Ok(self.budget.budget.clone().expect("made above"))
     }
 
-    /// Whether the two views share a budget; of one view, whether it has one.
+    /// Whether two views share a budget. For a view and itself: whether the view has a budget.
     pub(in crate::scene) fn shares_budget_with(&self, other: &View) -> bool {
         match (&self.budget.budget, &other.budget.budget) {
             (Some(own), Some(other)) => Arc::ptr_eq(own, other),
@@ -118,7 +120,7 @@ impl View {
         }
     }
 
-    /// Stages the limit, in units of 2^`unit` triangles.
+    /// Stages the triangle limit, in units of 2^`unit` triangles.
     pub(super) fn stage_budget(&self, staged: &mut Staged, (blocks, unit): (u32, u32)) -> Result<(), Error> {
         let Some(budget) = self.budget.budget.as_ref().filter(|_| self.has_budget()) else { return Ok(()) };
         let limit = self.triangle_limit().unwrap_or(u32::MAX) >> unit;
@@ -133,7 +135,7 @@ impl View {
     }
 }
 
-/// The jobs of a view's budget.
+/// Prepares the compute jobs of a view's budget.
 pub(super) fn prepared(
     gpu: &Gpu,
     layout: &Layout,

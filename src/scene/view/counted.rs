@@ -11,14 +11,15 @@ use crate::scene::statistics::ViewStatistics;
 use crate::scene::statistics::view::ViewCounts;
 
 impl View {
-    /// Statistics of the last frame whose counts have arrived. `None` before the first, and unless
-    /// [`Scene::set_statistics`](crate::scene::Scene::set_statistics) turned them on. The call does not wait: counts arrive
-    /// when the device has executed the frame and is polled, which each submission does.
+    /// Statistics of the last frame whose counts have arrived. `None` if statistics are off
+    /// ([`Scene::set_statistics`](crate::scene::Scene::set_statistics)), and before the first counts arrive. The call
+    /// does not wait. Counts arrive when the device has executed the frame and is polled; each submission polls the
+    /// device.
     pub fn statistics(&mut self) -> Option<&ViewStatistics> {
         self.counts.as_mut()?.last()
     }
 
-    /// Allocates the buffers for the counts of these objects, or frees them.
+    /// Allocates readback buffers for the counts of these objects. With `None`, frees the buffers.
     pub(in crate::scene) fn fit_counts(
         &mut self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Device buffers of a view: the visible instances and their draws.
+//! Device buffers of a view: lists of visible instances, and their draws.
 
 use super::attached::AttachedJobs;
 use super::budget::Budget;
@@ -20,7 +20,7 @@ use crate::scene::order::Ordered;
 use crate::shared::lod::object::SceneDraw;
 use crate::shared::render::scene_view::SceneView;
 
-/// The passes that a view's jobs are prepared with.
+/// The compute passes from which a view's jobs are prepared.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scene) struct ViewPasses<'a> {
     pub select: &'a SelectPass,
@@ -30,12 +30,12 @@ pub(in crate::scene) struct ViewPasses<'a> {
     pub sorted: &'a SortedPass,
 }
 
-/// Draws of sorted instances.
+/// Draws of transparent surfaces, one for each instance and part, and the job that writes them.
 #[derive(Debug)]
 pub(crate) struct SortedLists {
     pub job: Job,
     pub draws: Buffer<SceneDraw>,
-    /// Instance list of each draw; each has one entry.
+    /// For each draw, the list entry of the only instance that it draws.
     pub entries: Buffer<u32>,
 }
 
@@ -43,30 +43,30 @@ pub(crate) struct SortedLists {
 #[derive(Debug)]
 pub(crate) struct ViewLists {
     pub version: u64,
-    /// Instance lists to draw.
+    /// Lists of visible instances, which the draws refer to.
     pub lists: Buffer<u32>,
-    /// Draws of all objects.
+    /// Arguments of the indirect draws of all objects.
     pub arguments: Buffer<SceneDraw>,
-    /// Transform of each visible instance from model space to the corner of the view's cell. With motion history, as many
-    /// entries follow: the last frame's transforms of attached meshes.
+    /// For each visible instance, the transform from model space to the corner of the view's cell. With motion history,
+    /// a second half of the same length follows: the last frame's transforms of attached meshes.
     pub placements: Buffer<Affine>,
-    /// Last frame's decision per instance.
+    /// For each instance, the view's decision in the last frame: its level of detail and its transition.
     last_decisions: Buffer<u32>,
-    /// Bind group 0.
+    /// Bind group 0, with the view's uniforms and instances.
     pub group: Group,
-    /// The sun's shadow map that is bound in `group`.
+    /// The sun's shadow map that `group` contains.
     map: Option<wgpu::TextureView>,
-    /// Per object, the resources that its kind keeps per view.
+    /// For each object, the resources that its kind keeps per view.
     pub(in crate::scene) in_view: Vec<Option<Box<dyn KindInView>>>,
-    /// Sorted draws, if there are any.
+    /// Draws of transparent surfaces; `None` if the scene has none.
     pub sorted: Option<SortedLists>,
-    /// Sorted instances, from back to front.
+    /// The instances with transparent surfaces, sorted from back to front.
     pub order: Vec<Ordered>,
     pub(super) select: Job,
     pub(super) decide: Job,
-    /// The budget's stages between the two, if there is one.
+    /// The stages of the budget, which run between `select` and `decide`; `None` without a budget.
     pub(super) budget: Option<BudgetStages>,
-    /// The state that decisions read.
+    /// The state of the budget, which `decide` reads. Without a budget, it coarsens nothing.
     pub(super) budget_state: Buffer<BudgetState>,
     pub(super) list: Job,
     pub(super) attached: AttachedJobs,
@@ -155,7 +155,7 @@ impl ViewLists {
 }
 
 impl ViewLists {
-    /// Binds a sun's shadow map, unless it is bound already.
+    /// Binds a sun's shadow map in `group`, unless that map is bound already.
     pub(super) fn bind_map(
         &mut self,
         gpu: &Gpu,
@@ -181,7 +181,7 @@ fn in_view<'a>(
     InstancesInView { placements, instances, last_instances, last_decisions }
 }
 
-/// The sorted draws, if there are any, and the job that writes them.
+/// The draws of transparent surfaces, and the job that writes them; `None` if the scene has none.
 fn sorted(
     gpu: &Gpu,
     layout: &Layout,

@@ -1,4 +1,4 @@
-//! Views: a camera into a scene, its visible instances and their levels of detail.
+//! Views: cameras into a scene, with their visible instances and levels of detail.
 
 mod attached;
 mod budget;
@@ -30,15 +30,16 @@ use lists::{ViewLists, ViewPasses};
 pub(crate) use shadow::ViewShadow;
 use uniforms::{clip_rows, lod_camera};
 
-/// A camera into a scene: main view, shadow, reflection, half of a split screen. A frame may have any number of them.
+/// A camera into a scene, such as a main view, a shadow, a reflection, or half of a split screen. A frame may have any
+/// number of views.
 ///
-/// All settings of a view take effect in the next [`Scene::record`](super::Scene::record). For half of a split screen,
-/// [`Camera::viewport`] is the size of that half.
+/// All settings of a view take effect in the next [`Scene::record`](super::Scene::record). For a view that fills half
+/// of the screen, [`Camera::viewport`] is the size of that half.
 ///
 /// # Examples
 ///
-/// The eye's view, and the view of a sun's shadow map. The sun's view sees only casters, including those outside the eye's
-/// picture, at the levels of detail that the eye needs.
+/// The main view, and the view of a sun's shadow map. The sun's view shows only casters, including casters outside the
+/// main view's picture. Its levels of detail are those that the main view needs.
 ///
 /// ```no_run
 /// use glam::Vec3;
@@ -78,14 +79,14 @@ use uniforms::{clip_rows, lod_camera};
 #[derive(Debug)]
 pub struct View {
     scene: SceneNumber,
-    /// Number of the scene's device on which the view was made.
+    /// The number of the scene's device (`Scene::device`) on which the view was made.
     device: u32,
-    /// Name of the function that remakes the view on another device.
+    /// Name of the function that recreates the view on another device, for error messages.
     pub(crate) remade_by: &'static str,
     quality: Quality,
     budget: BudgetOfView,
     camera: Option<Camera>,
-    /// The view's last frame.
+    /// The last frame in which the view was recorded.
     last: Option<LastFrame>,
     lod_cameras: Vec<Camera>,
     mask: u16,
@@ -100,24 +101,24 @@ pub struct View {
     counts: Option<ViewCounts>,
 }
 
-/// The pattern of pixels by which levels of detail dither into each other.
+/// The pattern of pixels by which one level of detail dithers into the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DitherPattern {
-    /// The same in every frame.
+    /// The pattern is the same in every frame.
     #[default]
     Still,
-    /// Moved in every frame, through all 64 places.
+    /// The pattern moves in every frame, through all of its 64 positions.
     PerFrame,
 }
 
-/// A view's last frame.
+/// The last frame in which a view was recorded.
 #[derive(Debug, Clone, Copy)]
 struct LastFrame {
     frame: u64,
     camera: Camera,
     /// The scene's time in seconds.
     time: f64,
-    /// Whether the next frame forgets it ([`View::cut`]).
+    /// Whether the next frame must ignore this frame ([`View::cut`]).
     is_cut: bool,
 }
 
@@ -128,7 +129,7 @@ pub(super) struct Recorded {
     pub mirrors: bool,
     /// Whether depth falls with distance.
     pub reversed: bool,
-    /// Per object: whether it has instances that are not mirrored, and whether it has mirrored ones.
+    /// For each object: whether it has instances that are not mirrored, and whether it has mirrored ones.
     pub sides: Vec<[bool; 2]>,
 }
 
@@ -138,7 +139,7 @@ pub(super) struct Moment {
     pub frame: u64,
     /// The scene's time in seconds.
     pub time: f64,
-    /// Whether the view is the first of the frame.
+    /// Whether the view is the first one that the frame records.
     pub is_first: bool,
 }
 
@@ -172,15 +173,16 @@ impl View {
         })
     }
 
-    /// Sets the camera. Field of view, viewport and depth direction may differ from the previous camera's.
+    /// Sets the camera. Its field of view, viewport and depth direction may differ from those of the previous camera.
     ///
     /// # Errors
-    /// [`InputError`] as [`Camera::validate`], for a projection that is neither perspective nor parallel, and for a near
-    /// plane that, by `depth`, is not ahead of the eye. The camera then stays unchanged.
+    /// [`InputError`] if [`Camera::validate`] refuses the camera, and for a projection that is neither perspective nor
+    /// parallel. [`InputError`] also if the near plane is not ahead of the eye; [`Camera::depth`] decides which plane
+    /// is the near one. The camera then stays unchanged.
     ///
     /// # Examples
     ///
-    /// In each frame, from the south and above.
+    /// Sets a camera in the south that looks down at the target.
     ///
     /// ```no_run
     /// # use relievo::scene::{Camera, View};
@@ -197,14 +199,14 @@ impl View {
         Ok(())
     }
 
-    /// Sets the quality.
+    /// Sets the quality: the largest error, and limits of triangles and time.
     ///
     /// # Errors
-    /// [`InputError`] as [`Quality::validate`].
+    /// [`InputError`] if [`Quality::validate`] refuses the quality.
     ///
     /// # Examples
     ///
-    /// Coarser while the camera moves, and never more than a million triangles.
+    /// A view that is coarser while the camera moves, and never draws more than a million triangles.
     ///
     /// ```no_run
     /// # use relievo::scene::{Quality, View};
@@ -222,17 +224,17 @@ impl View {
         Ok(())
     }
 
-    /// The quality.
+    /// The view's quality.
     pub fn quality(&self) -> Quality {
         self.quality
     }
 
-    /// Sets the cameras that decide the levels of detail: each instance gets the finest level that any of them needs.
-    /// Without any, the view's own camera decides. Give a shadow view the cameras of the main views, so that shadows match
-    /// their casters. Call this again whenever those cameras change.
+    /// Sets the cameras that decide the levels of detail. Each instance gets the finest level that any of these cameras
+    /// needs. If the list is empty, the view's own camera decides. Give a shadow view the cameras of the main views, so
+    /// that shadows match their casters. Call this again whenever those cameras change.
     ///
     /// # Errors
-    /// [`InputError`] for more than four cameras, and as [`View::set`].
+    /// [`InputError`] for more than four cameras, and for a camera that [`View::set`] would refuse.
     pub fn set_lod_cameras(&mut self, cameras: &[Camera]) -> Result<(), InputError> {
         if cameras.len() > VIEW_CAMERAS as usize {
             let bound = format!("must be at most {VIEW_CAMERAS}");
@@ -250,8 +252,9 @@ impl View {
         Ok(())
     }
 
-    /// Sets the view's mask: it shows only instances whose visibility mask
-    /// ([`Scene::set_visibility_mask`](super::Scene::set_visibility_mask)) shares a bit with `mask`. The default shows all.
+    /// Sets the view's mask. The view shows only instances whose visibility mask
+    /// ([`Scene::set_visibility_mask`](super::Scene::set_visibility_mask)) shares a bit with `mask`. The default shows
+    /// all instances.
     ///
     /// # Examples
     ///
@@ -275,13 +278,13 @@ impl View {
         self.casters = casters;
     }
 
-    /// Sets whether the pattern of dithers ([`Transition::Dither`](super::Transition::Dither)) stands still or changes in each
-    /// frame. Temporal antialiasing averages a pattern that changes; the default stands still.
+    /// Sets whether the pattern of [`Transition::Dither`](super::Transition::Dither) stands still, which is the
+    /// default, or changes in each frame. Temporal antialiasing averages a pattern that changes.
     pub fn set_dither(&mut self, dither: DitherPattern) {
         self.dither = dither;
     }
 
-    /// Pixels by which a frame's pattern is moved.
+    /// The offset of a frame's dither pattern, in pixels.
     fn dither_offset(&self, frame: u64) -> UVec2 {
         match self.dither {
             DitherPattern::Still => UVec2::ZERO,
@@ -290,8 +293,8 @@ impl View {
         }
     }
 
-    /// Makes the next frame begin afresh, for a cut or a jump of the camera: its levels of detail do not depend on those of
-    /// the last frame, no fade runs on, and velocities are those of a still camera.
+    /// Makes the next frame independent of the last one, for a cut or a jump of the camera. Levels of detail are then
+    /// chosen anew, no fade continues, and velocities are those of a still camera.
     pub fn cut(&mut self) {
         if let Some(last) = &mut self.last {
             last.is_cut = true;
@@ -303,7 +306,7 @@ impl View {
         self.camera.as_ref()
     }
 
-    /// Whether the view shows an instance with these flags when it is inside the view volume.
+    /// Whether the view shows an instance with these flags if the instance is inside the view volume.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn may_show(&self, flags: u32) -> bool {
         let is_in_mask = instance_flags_mask(flags) & u32::from(self.mask) != 0;
@@ -337,17 +340,17 @@ impl View {
         Ok(())
     }
 
-    /// Facts about the last frame that a renderer needs, if there was one.
+    /// Facts about the view's last frame that a renderer needs; `None` before the first frame.
     pub(super) fn last_recorded(&self) -> Option<&Recorded> {
         self.recorded.as_ref()
     }
 
-    /// Whether frame `frames − 1`, the last one, included this view.
+    /// Whether the scene's last frame included this view. `frames` is the number of frames recorded so far.
     pub(super) fn is_of_frame(&self, frames: u64) -> bool {
         self.last.is_some_and(|last| last.frame + 1 == frames)
     }
 
-    /// Stores a recorded frame at scene time `time`.
+    /// Notes that a frame with this view was recorded, at scene time `time`.
     pub(super) fn recorded(&mut self, frame: u64, time: f64) {
         self.last = self.camera.map(|camera| LastFrame { frame, camera, time, is_cut: false });
     }
@@ -390,7 +393,7 @@ impl View {
         Ok(())
     }
 
-    /// Sorts the instances that are drawn one by one.
+    /// Sorts the instances with transparent surfaces, which are drawn one by one.
     pub(super) fn order<'a>(&mut self, objects: impl Iterator<Item = &'a Object>, selected: &SelectView) {
         if let (Some(lists), Some(camera)) = (&mut self.lists, &self.camera) {
             back_to_front(&mut lists.order, objects, (selected, camera));

@@ -11,7 +11,7 @@ use crate::scene::view::ViewShadow;
 use crate::shared::render::scene_view::SceneView;
 
 impl SceneView {
-    /// The uniform of a camera and its last frame's camera, under a light and with its shadow.
+    /// The view's uniform for shaders, from its camera now and in the last frame, the light, and the sun's shadow.
     pub(super) fn new(
         [camera, last]: [&Camera; 2],
         own: &LodCamera,
@@ -70,7 +70,7 @@ pub(super) fn clip_from_cell(camera: &Camera, cell: [i32; 3]) -> DMat4 {
 }
 
 impl SelectView {
-    /// A view that sees nothing.
+    /// The uniform of a view that sees no instance.
     pub(super) fn nothing() -> Self {
         let camera = LodCamera {
             eye: Vec3::ZERO,
@@ -101,14 +101,15 @@ impl SelectView {
     }
 }
 
-/// Rows x, y and w of a camera's transform from its cell to clip space, in units of half the picture's height.
+/// Rows x, y and w of the matrix from a camera's cell to clip space. x and y are in units of half the picture's height.
 pub(super) fn clip_rows(camera: &Camera) -> [Vec4; 3] {
     let clip = camera.clip_from_cell();
     let [width, height] = camera.viewport.map(|size| size as f32);
     [clip.row(0) * (width / height), clip.row(1), clip.row(3)]
 }
 
-/// A camera that decides levels of detail, relative to a cell's corner.
+/// A camera that decides levels of detail, in the format of kernels. Its eye is relative to the corner of `cell`, and
+/// `pixels` is the largest error on the screen.
 pub(super) fn lod_camera(camera: &Camera, cell: [i32; 3], pixels: f32) -> Result<LodCamera, InputError> {
     let Camera { view_from_cell, clip_from_view, viewport, depth, .. } = *camera;
     let mut own = LodCamera::new(view_from_cell, clip_from_view, viewport, depth, pixels)?;
