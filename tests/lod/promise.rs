@@ -125,12 +125,18 @@ struct Work {
 }
 
 impl Work {
-    fn add(&mut self, other: Self) {
-        self.instances += other.instances;
-        self.triangles += other.triangles;
-        self.clusters += other.clusters;
-        self.bones += other.bones;
+    fn and(self, other: Self) -> Self {
+        Self {
+            instances: self.instances + other.instances,
+            triangles: self.triangles + other.triangles,
+            clusters: self.clusters + other.clusters,
+            bones: self.bones + other.bones,
+        }
     }
+}
+
+fn sum(works: &[Work]) -> Work {
+    works.iter().fold(Work::default(), |all, work| all.and(*work))
 }
 
 /// Seconds that recording and drawing took.
@@ -167,9 +173,10 @@ impl<'a> World<'a> {
             let model = &named.model;
             let kind = usize::from(!model.clips.is_empty());
             let count = plan.instances[kind] / counts[kind];
-            let (object, radius) = match kind {
-                0 => (scene.add_mesh(model, count), radius(model)),
-                _ => (scene.add_character(model, count), BoundingSphere::in_clip(model, 0).radius),
+            // Meshes lie on the ground, and characters have their origin there.
+            let (object, [radius, low]) = match kind {
+                0 => (scene.add_mesh(model, count), extent(model)),
+                _ => (scene.add_character(model, count), [BoundingSphere::in_clip(model, 0).radius, 0.0]),
             };
             let object = object.expect("added");
             if transition != Transition::Geomorph || scene.can_morph(object).expect("the scene's object") {
@@ -182,8 +189,8 @@ impl<'a> World<'a> {
                 let turn = 2.4 * at as f32;
                 let place = |cell: usize, around: f32| SPACING * (cell as f32 + 0.5 + 0.3 * around);
                 let [x, z] = [place(cell % side, turn.sin()), place(cell / side, turn.cos())];
-                let y = height(&scene, land, x, z) + 0.8;
                 let size = (0.8 + 0.4 * (0.37 * at as f32).fract()) / radius;
+                let y = height(&scene, land, x, z) - size * low;
                 let placement = Placement::at([x, y, z]).turned(turn).scaled(size);
                 let instance = scene.spawn(object, placement).expect("room");
                 if kind == 1 {
@@ -217,8 +224,8 @@ impl<'a> World<'a> {
         Camera::looking_at(eye, eye + ahead, field, [0.1, 1000.0], self.plan.viewport)
     }
 
-    /// Records a frame, and returns its work, and the seconds until the device had done it.
-    fn record(&mut self, frame: usize) -> (Work, f64) {
+    /// Records a frame, and returns the work of each object, and the seconds until the device had done it.
+    fn record(&mut self, frame: usize) -> (Vec<Work>, f64) {
         self.view.set(self.camera(frame)).expect("a camera");
         self.scene.advance(1.0 / 60.0).expect("finite");
         let gpu = self.scene.gpu().clone();
@@ -231,12 +238,17 @@ impl<'a> World<'a> {
         // Ground and reliefs have one level.
         let drawn = &self.view.statistics().expect("arrived").objects[2..];
         let characters = &self.scene.statistics().expect("arrived").characters;
-        let work = Work {
-            instances: drawn.iter().map(|object| u64::from(object.instances())).sum(),
-            triangles: drawn.iter().map(ObjectStatistics::triangles).sum(),
-            clusters: characters.iter().map(|character| u64::from(character.clusters)).sum(),
-            bones: characters.iter().map(|character| u64::from(character.bones)).sum(),
+        let work = |object: &ObjectStatistics| {
+            let moved = characters.iter().find(|character| character.object == object.object);
+            let [clusters, bones] = moved.map_or([0; 2], |moved| [moved.clusters, moved.bones]);
+            Work {
+                instances: object.instances().into(),
+                triangles: object.triangles(),
+                clusters: clusters.into(),
+                bones: bones.into(),
+            }
         };
+        let work = drawn.iter().map(work).collect();
         (work, seconds)
     }
 
@@ -299,16 +311,18 @@ fn height(scene: &Scene, land: ObjectId, x: f32, z: f32) -> f32 {
     found.map_or(0.0, |point| point.height as f32)
 }
 
-/// The radius of a mesh at rest around its origin.
-fn radius(model: &Model) -> f32 {
+/// The radius of a mesh at rest around its origin, and its lowest height.
+fn extent(model: &Model) -> [f32; 2] {
     let rest = relievo::scene::mesh::at_rest_merged(model).expect("valid").0;
     let all = rest.model.meshes.iter().flat_map(|mesh| &mesh.positions);
-    all.map(|position| Vec3::from(*position).length()).fold(0.0, f32::max)
+    all.fold([0.0, f32::INFINITY], |[radius, low], position| {
+        [radius.max(Vec3::from(*position).length()), low.min(position[1])]
+    })
 }
 
-/// What a walk found: the work of all frames, pictures, and the time of those that were drawn.
+/// What a walk found: the work of each object in all frames, pictures, and the time of those that were drawn.
 struct Walk {
-    work: Work,
+    works: Vec<Work>,
     seconds: Seconds,
     pictures: Vec<RgbaImage>,
     /// For each pair, the instances that both of its frames draw, and those whose levels differ.
@@ -323,12 +337,16 @@ fn each(plan: &Plan, count: usize, frame: usize) -> Option<usize> {
 /// Walks all frames. Pairs are looked for if `is_paired`.
 fn walk(world: &mut World<'_>, is_paired: bool) -> Walk {
     let plan = world.plan;
-    let mut found =
-        Walk { work: Work::default(), seconds: Seconds::default(), pictures: Vec::new(), pairs: Vec::new() };
+    let mut found = Walk {
+        works: vec![Work::default(); world.objects.len()],
+        seconds: Seconds::default(),
+        pictures: Vec::new(),
+        pairs: Vec::new(),
+    };
     let mut first = BTreeMap::new();
     for frame in 0..plan.frames {
-        let (work, recorded) = world.record(frame);
-        found.work.add(work);
+        let (works, recorded) = world.record(frame);
+        found.works.iter_mut().zip(works).for_each(|(all, work)| *all = all.and(work));
         if frame == 0 {
             // Drivers compile what the first picture needs.
             world.picture();
@@ -453,8 +471,8 @@ fn costs(world: &mut World<'_>) -> String {
             // Bones whose poses fit another number of pixels are sampled in the first frames.
             world.record(frame);
             world.record(frame);
-            let (work, recorded) = world.record(frame);
-            all.add(work);
+            let (works, recorded) = world.record(frame);
+            all = all.and(sum(&works));
             seconds.recorded += recorded;
             seconds.drawn += world.picture().1;
         }
@@ -489,7 +507,7 @@ fn run(plan: &Plan, models: &[Named]) -> [f64; 3] {
     done("walked within a pixel");
     let mut text = String::from("\n| a frame | full detail | a pixel | ratio |\n|---|---:|---:|---:|\n");
     let million = |count: u64| count as f64 / plan.frames as f64 / 1e6;
-    let works = [full.work, within.work];
+    let works = [&full, &within].map(|walk| sum(&walk.works));
     let second = |seconds: f64| seconds / plan.pictures as f64;
     let pairs: [(&str, [f64; 2]); 6] = [
         ("instances in view, thousands", works.map(|work| 1e3 * million(work.instances))),
@@ -502,6 +520,16 @@ fn run(plan: &Plan, models: &[Named]) -> [f64; 3] {
     for (name, [full, within]) in pairs {
         text += &ratio(name, full, within);
     }
+    text += "\n| full detail ÷ a pixel | triangles | clusters | bones |\n|---|---:|---:|---:|\n";
+    for ((full, within), Named { name, .. }) in full.works.iter().zip(&within.works).zip(models) {
+        let [triangles, clusters, bones] = [
+            [full.triangles, within.triangles],
+            [full.clusters, within.clusters],
+            [full.bones, within.bones],
+        ]
+        .map(|[full, within]| full as f64 / within as f64);
+        writeln!(text, "| {name} | {triangles:.2} | {clusters:.2} | {bones:.2} |").expect("a string");
+    }
     keep("full", &full.pictures);
     keep("within", &within.pictures);
     let flips = full.pictures.iter().zip(&within.pictures);
@@ -513,7 +541,7 @@ fn run(plan: &Plan, models: &[Named]) -> [f64; 3] {
     done("compared costs");
     println!("{text}");
     // Without antialiasing, small triangles look otherwise as soon as they move by a part of a pixel.
-    assert!(worst > 0.0 && worst < 0.05, "{flips:?}");
+    assert!(worst > 0.0 && worst < 0.1, "{flips:?}");
 
     let hard = measure(&mut World::new(plan, models, 1.0, Transition::Hard), &within.pairs);
     println!("{}", table("levels change at once", &hard, models));
