@@ -1,4 +1,8 @@
 // The tables of a set of clips, and positions in time.
+//
+// Track word: the timeline, counted from the clip's first, or CONSTANT; and INTERPOLATION_STEP, INTERPOLATION_LINEAR or
+// INTERPOLATION_SPLINE.
+// packed Track: timeline 30, interpolation 2
 
 // Location of a clip's data in a set of clips.
 struct ClipEntry {
@@ -41,9 +45,6 @@ struct SetTrack {
     words: vec2<u32>,
 }
 
-// Track word: the timeline, counted from the clip's first, or CONSTANT; and INTERPOLATION_STEP, INTERPOLATION_LINEAR or
-// INTERPOLATION_SPLINE.
-// packed Track: timeline 30, interpolation 2
 // The timeline of a track whose value never changes.
 const CONSTANT: u32 = 0x3fffffffu;
 

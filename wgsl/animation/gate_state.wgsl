@@ -1,4 +1,7 @@
 // State per instance that gates read.
+//
+// Progress word of `ClipClock::fraction_and_reason`: the fraction of the way to the next row, and the update reason.
+// packed Progress: fraction 20, reason 12
 
 // An instance's level of detail.
 struct Lod {
@@ -36,8 +39,6 @@ struct ClipClock {
     ahead_fraction: u32,
 }
 
-// Progress word of `ClipClock::fraction_and_reason`: the fraction of the way to the next row, and the update reason.
-// packed Progress: fraction 20, reason 12
 // 1 in fixed point: the fraction of the whole way from one row to the next.
 const FRACTION_ONE: u32 = 65536u;
 
