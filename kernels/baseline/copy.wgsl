@@ -1,10 +1,12 @@
 // Copies 16 bytes per thread. Its time is the cost of moving bytes, against which other kernels are measured.
 
+// Parameters of the kernel `baseline/copy`.
 struct CopyParams {
     // Number of 16-byte vectors.
     vectors: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: CopyParams;
 // Vectors to copy.
 @group(0) @binding(1) var<storage, read> source: array<vec4<u32>>;

@@ -7,6 +7,7 @@ import package::wgsl::animation::instance::AnimationInstance;
 // Whether tracks are looked up in tables, as sampling does. If false, tracks are evenly spaced, so that only keys are read.
 override TABLES: bool = true;
 
+// Parameters of the kernel `baseline/gather`.
 struct GatherParams {
     // Number of bones of all instances together.
     pairs: u32,
@@ -16,6 +17,7 @@ struct GatherParams {
     keys: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: GatherParams;
 // Clip and playback of each instance.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;

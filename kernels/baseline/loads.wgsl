@@ -6,6 +6,7 @@ struct LoadsParams {
     loads: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: LoadsParams;
 // Texture to read; the red channel counts.
 @group(0) @binding(1) var texels: texture_2d<f32>;

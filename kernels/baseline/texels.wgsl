@@ -3,6 +3,7 @@
 import package::wgsl::terrain::tiles::{MapZone, plane_tiles, texel_index, tiles_up};
 import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 
+// Parameters of the kernel `baseline/texels`.
 struct TexelsParams {
     // Number of samples along an edge of a window.
     width: u32,
@@ -16,6 +17,7 @@ struct TexelsParams {
     tiles_per_unit: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: TexelsParams;
 // Zones of the ground and their textures.
 @group(0) @binding(2) var<storage, read> zones: array<MapZone>;

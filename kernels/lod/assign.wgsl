@@ -9,6 +9,7 @@ const FADE_STEPS: f32 = 64.0;
 // Largest `Lod::allowed`. It is exact in an f32, and below the motion of a whole clip, 2^30.
 const MAX_UNITS: f32 = 1073741760.0;
 
+// Parameters of the kernel `lod/assign`.
 struct AssignParams {
     // Index in `allowed` of the object's first instance.
     first: u32,
@@ -26,6 +27,7 @@ struct AssignParams {
     max_influences: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: AssignParams;
 // Per instance of the scene: the displacement that the frame's views allow, in model units; negative if no view sees the
 // instance.

@@ -6,6 +6,7 @@ import package::wgsl::affine::product_row;
 import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::view::SelectView;
 
+// Parameters of the kernel `lod/attach`.
 struct AttachParams {
     // Number of valid entries in `attachments`.
     attached: u32,
@@ -53,6 +54,7 @@ struct KeptBone {
     unused_b: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: AttachParams;
 // The view for which placements are written.
 @group(0) @binding(1) var<uniform> view: SelectView;

@@ -38,6 +38,7 @@ const ROUNDED_PARTS: u32 = 2u;
 // Time constant of the pressure's exponential decay, in seconds.
 const SETTLING: f32 = 0.15;
 
+// Parameters of the kernel `lod/budget`.
 struct BudgetParams {
     // Largest number of triangles, in units of the budget.
     limit: u32,
@@ -62,6 +63,7 @@ struct BudgetWork {
     parts: array<atomic<u32>, 1024>,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: BudgetParams;
 // The view that shares the budget.
 @group(0) @binding(1) var<uniform> view: SelectView;

@@ -17,6 +17,7 @@ const RUNS: u32 = 8u;
 // Number of blocks per workgroup in the stage `PLACE`.
 const PLACED_BLOCKS: u32 = 4u;
 
+// Parameters of the kernel `lod/list`.
 struct ListParams {
     // Number of objects.
     objects: u32,
@@ -24,6 +25,7 @@ struct ListParams {
     blocks: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: ListParams;
 // The objects of the scene.
 @group(0) @binding(1) var<storage, read> objects: array<LodObject>;

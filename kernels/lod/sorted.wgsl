@@ -15,11 +15,13 @@ struct SortedDraw {
     object: u32,
 }
 
+// Parameters of the kernel `lod/sorted`.
 struct SortedParams {
     // Number of sorted draws.
     count: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: SortedParams;
 // The parts to draw. Their instances, first draws and objects must be valid indices of `decisions`, `arguments` and `objects`.
 // length: sorted

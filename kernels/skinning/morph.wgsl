@@ -10,6 +10,7 @@ override PAGED: bool = false;
 // Number of words of an `InstanceLod`.
 const LOD_WORDS: u32 = 3u;
 
+// Parameters of the kernel `skinning/morph`.
 struct MorphParams {
     // Number of vertices of the mesh.
     vertices: u32,
@@ -23,6 +24,7 @@ struct MorphParams {
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: MorphParams;
 // Vertices of the mesh, five pairs of floats each.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;

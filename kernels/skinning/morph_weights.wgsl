@@ -7,6 +7,7 @@ import package::wgsl::animation::interpolation::{INTERPOLATION_LINEAR, INTERPOLA
 import package::wgsl::animation::timeline::{keyframe_cursor, times};
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
+// Parameters of the kernel `skinning/morph_weights`.
 struct MorphWeightsParams {
     // Number of morph targets.
     targets: u32,
@@ -30,6 +31,7 @@ struct WeightEntry {
     interpolation: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: MorphWeightsParams;
 // Clip and playback of each instance.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;

@@ -7,6 +7,7 @@ import package::wgsl::skinning::page::NO_PAGE;
 // Number of threads of the workgroup.
 const LANES = 64u;
 
+// Parameters of the kernel `skinning/pages`.
 struct PageParams {
     // Number of instances.
     instances: u32,
@@ -24,6 +25,7 @@ struct PageState {
     short: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: PageParams;
 // Level of detail of each instance.
 @group(0) @binding(1) var<storage, read> instance_lods: array<InstanceLod>;

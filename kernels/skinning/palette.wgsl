@@ -7,6 +7,7 @@ import package::wgsl::skinning::rows::{LEAST_LENGTH, unit_or};
 // Whether palettes hold dual quaternions and stretches instead of matrices.
 override DUAL: bool = false;
 
+// Parameters of the kernel `skinning/palette`.
 struct PaletteParams {
     // Number of bones of the skin.
     bones: u32,
@@ -16,6 +17,7 @@ struct PaletteParams {
     pairs: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: PaletteParams;
 // Indices in the skeleton of the skin's bones.
 @group(0) @binding(1) var<storage, read> bones: array<u32>;

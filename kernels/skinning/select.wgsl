@@ -19,6 +19,7 @@ override KEEP: bool = false;
 // Number of words per instance in `skinned` before the instance's weights.
 const SKINNED_WORDS: u32 = 4u;
 
+// Parameters of the kernel `skinning/select`.
 struct SelectParams {
     // Number of instances.
     instances: u32,
@@ -50,6 +51,7 @@ struct Dispatched {
     count: atomic<u32>,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: SelectParams;
 // Bone set of each cluster, one bit per bone.
 @group(0) @binding(1) var<storage, read> masks: array<u32>;

@@ -17,6 +17,7 @@ override PAGED: bool = false;
 // With PAGED, whether the positions of the last frame are kept.
 override KEEP: bool = false;
 
+// Parameters of the kernel `skinning/skin`.
 struct SkinParams {
     // Number of vertices of the mesh.
     vertices: u32,
@@ -32,6 +33,7 @@ struct SkinParams {
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: SkinParams;
 // Vertices, five pairs of floats each: position, normal, tangent and handedness.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
