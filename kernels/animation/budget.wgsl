@@ -76,7 +76,7 @@ var<workgroup> sums: array<u32, WIDTH>;
 struct WordOfBones {
     // Index of the instance.
     instance: u32,
-    // Index of the first of these bones in the instance.
+    // Slot of the first of these bones in the instance.
     slot: u32,
     // Bones that may be sampled, one bit each.
     candidates: u32,

@@ -14,7 +14,7 @@ struct ClipClockParams {
     elapsed: f32,
     // Number of layers above the base layer.
     layers: u32,
-    // Seconds by which bones may be sampled ahead.
+    // Look-ahead in seconds: the time by which bones may be sampled ahead; 0 for none.
     ahead: f32,
 }
 

@@ -69,7 +69,7 @@ fn spread(instance: u32) {
     let first_word = instance * params.words;
     let all_words = params.instances * params.words;
     var count = 0u;
-    // The slot after the last updated one.
+    // End of the last updated subtree: the slot after its last one.
     var end = 0u;
     for (var word = 0u; word < params.words && end <= params.bones; word++) {
         let chosen = bits[first_word + word];

@@ -5,7 +5,7 @@ import package::wgsl::animation::gate_state::{LOD_HIDDEN, Lod};
 
 // Parameters of the kernel `animation/drive`.
 struct DriveParams {
-    // Number of words with driven bones.
+    // Number of entries in `driven`.
     driven: u32,
     // Number of instances.
     instances: u32,

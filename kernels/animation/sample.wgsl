@@ -34,7 +34,7 @@ struct SampleParams {
 @group(0) @binding(0) var<uniform> params: SampleParams;
 // Clip and playback of each instance, layer by layer. Cursors have the same order.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// Three tracks per bone and clip.
+// Three tracks per bone and clip: translation, rotation and scale.
 @group(0) @binding(2) var<storage, read> tracks: array<SetTrack>;
 // Values of the keys of all tracks.
 @group(0) @binding(3) var<storage, read> values: array<vec4<f32>>;

@@ -21,7 +21,7 @@ struct GatherParams {
 @group(0) @binding(0) var<uniform> params: GatherParams;
 // Clip and playback of each instance.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// Three tracks per bone and clip.
+// Three tracks per bone and clip: translation, rotation and scale.
 @group(0) @binding(2) var<storage, read> tracks: array<SetTrack>;
 // One cursor per instance, in two words: the key, and the fraction as bits.
 @group(0) @binding(3) var<storage, read> cursors: array<vec2<u32>>;

@@ -34,7 +34,7 @@ struct Attachment {
     character: u32,
     // Index of the bone.
     bone: u32,
-    // Unique key: no other attachment has it, now or later.
+    // Key of the attachment. No other attachment has the same key, now or later.
     key: u32,
     // Transform from the mesh's space to the bone's space, three rows.
     offset: array<vec4<f32>, 3>,

@@ -35,7 +35,7 @@ const OCTAVE: f32 = 65536.0;
 const MAX_FACTOR: f32 = 65536.0;
 // Safety margin for the rounding of `log2` and `exp2`, in parts of a bin.
 const ROUNDED_PARTS: u32 = 2u;
-// Time constant of the pressure's exponential decay, in seconds.
+// Time constant with which the pressure falls exponentially, in seconds.
 const SETTLING: f32 = 0.15;
 
 // Parameters of the kernel `lod/budget`.
@@ -72,7 +72,7 @@ struct BudgetWork {
 @group(0) @binding(2) var<storage, read> objects: array<LodObject>;
 // Object index of each block of instances; `NO_OBJECT` for none.
 @group(0) @binding(3) var<storage, read> block_objects: array<u32>;
-// The metric word of each instance.
+// Metric word of each instance in the view.
 // length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read> metrics: array<u32>;
 // Decision word of each instance in the last frame; valid if `SelectView::is_next` is 1.
@@ -121,7 +121,7 @@ struct Chosen {
     is_seen: bool,
 }
 
-// State of the instance at `index` for the choice of its level. It does not count if its block belongs to no object.
+// State of the instance at `index` for the choice of its level. The instance does not count if its block belongs to no object.
 fn chosen(index: u32) -> Chosen {
     var result: Chosen;
     if index / BLOCK >= params.blocks || block_objects[index / BLOCK] == NO_OBJECT {
@@ -200,7 +200,7 @@ fn find_run(lane: u32, triangles: u32) -> vec2<u32> {
     return vec2<u32>(found[0], found[1]);
 }
 
-// Finds the bin whose savings bring the triangles within the limit, and clears the bins.
+// Finds the bin at whose savings the triangles come within the limit, and clears the bins.
 fn find_bin(lane: u32) {
     let length = ALL_BINS / 256u;
     var saved = 0u;

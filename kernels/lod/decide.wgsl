@@ -8,14 +8,14 @@ import package::wgsl::lod::view::SelectView;
 // Value of `finest` for an instance that no view of the frame has seen.
 const UNSEEN_LEVEL = 0xffffffffu;
 
-// The view. Its number of blocks may be less than the length of `block_objects`.
+// The view. `SelectView::blocks` may be less than the length of `block_objects`.
 @group(0) @binding(0) var<uniform> view: SelectView;
 // The objects of the scene.
 // length: 1
 @group(0) @binding(1) var<storage, read> objects: array<LodObject>;
 // Object index of each block of instances. The instances of a block with `NO_OBJECT` are left unchanged.
 @group(0) @binding(2) var<storage, read> block_objects: array<u32>;
-// The metric word of each instance.
+// Metric word of each instance in the view.
 // length: BLOCK * blocks
 @group(0) @binding(3) var<storage, read> metrics: array<u32>;
 // Decision word of each instance. In: the decisions of the last frame, if `SelectView::is_next` is 1. Out: the decisions of

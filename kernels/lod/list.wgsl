@@ -7,7 +7,7 @@ import package::wgsl::lod::transition::{NO_LIST, transition_entries};
 // One of the constants below.
 override STAGE: u32 = 0u;
 
-// Stage: a workgroup per object computes prefix sums.
+// Stage: a workgroup per object computes prefix sums of the counts of its blocks.
 const SUM: u32 = 0u;
 // Stage: a thread per instance writes list entries. The threads of a block synchronize at barriers.
 const PLACE: u32 = 1u;
@@ -77,14 +77,14 @@ fn sum(object: LodObject, lane: u32) {
     }
 }
 
-// Marks an instance of a block as a member of a list.
+// Marks an instance of a block as a member of a list. `lane` is the thread's index in the workgroup.
 fn mark(list: u32, lane: u32) {
     if list != NO_LIST {
         atomicOr(&members[2u * (OBJECT_LISTS * (lane / BLOCK) + list) + lane % BLOCK / 32u], 1u << (lane % 32u));
     }
 }
 
-// Writes an instance's entry into a list.
+// Writes an instance's entry into a list, in the order of instances.
 fn write_entry(object: LodObject, block: u32, lane: u32, list: u32, entry: u32) {
     if list == NO_LIST {
         return;

@@ -11,7 +11,7 @@ const UNSEEN_ALLOWED: f32 = -1.0;
 // Largest speed in the picture that counts, in picture heights per second.
 const MAX_MOTION: f32 = 4.0;
 
-// The view. Its number of blocks may be less than the length of `block_objects`.
+// The view. `SelectView::blocks` may be less than the length of `block_objects`.
 @group(0) @binding(0) var<uniform> view: SelectView;
 // The objects of the scene.
 // length: 1
@@ -43,7 +43,7 @@ fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
     return is_alive && casts && (instance_flags_mask(instance.flags) & view.mask) != 0u;
 }
 
-// Whether a sphere reaches into the view volume.
+// Whether a sphere reaches into the view volume. The center is relative to the corner of the view's cell.
 fn is_inside(center: vec3<f32>, radius: f32) -> bool {
     let lengths = length(center) + radius;
     var least = MAX_ALLOWED;
@@ -62,8 +62,8 @@ fn in_picture(rows: array<vec4<f32>, 3>, point: vec3<f32>) -> vec2<f32> {
     return select(vec2<f32>(1e4), vec2<f32>(dot(rows[0], at), dot(rows[1], at)) / w, w > 0.0);
 }
 
-// Factor of the metric for instances that are perceived poorly (A section 6.4): those that cross the picture, and those away
-// from its middle.
+// Factor of the metric for instances that are perceived poorly (A section 6.4): instances that cross the picture, and instances
+// away from its middle.
 fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
     if object.motion == 0.0 && object.periphery == 0.0 {
         return 1.0;
@@ -83,7 +83,7 @@ fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
 
 // Result of a view's cameras for a visible instance.
 struct Seen {
-    // Smallest displacement that the view's cameras allow, in model units.
+    // Smallest displacement that any of the view's cameras allows, in model units.
     allowed: f32,
     // Smallest metric in any of the view's cameras, which decides the level.
     metric: f32,

@@ -20,7 +20,7 @@ struct MorphParams {
     instances: u32,
     // Number of clusters times number of instances.
     pairs: u32,
-    // Number of clusters at each level of detail.
+    // Number of clusters of the mesh at each level of detail.
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 

@@ -13,7 +13,7 @@ struct MorphWeightsParams {
     targets: u32,
     // Number of targets times number of instances.
     pairs: u32,
-    // Elapsed time in seconds, the same for all instances. At 0, the clip time of an instance is its `start`.
+    // Elapsed time in seconds, the same for all instances. At elapsed time 0, the clip time of an instance is its `start`.
     elapsed: f32,
 }
 
@@ -47,7 +47,7 @@ struct WeightEntry {
 
 // Value of a cubic Hermite spline at the fraction `t` of the interval from a key to the next, which takes `seconds`.
 fn spline(first: u32, key: u32, t: f32, seconds: f32) -> f32 {
-    // The in-tangents, values and out-tangents of the key precede those of the next key.
+    // Each key has in-tangents, values and out-tangents, in this order. The next key's follow.
     let at = first + 3u * key * params.targets;
     let start = values[at + params.targets];
     let leaving = values[at + 2u * params.targets];
@@ -76,7 +76,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     let found = keyframe_cursor(Timeline(entry.first_time, entry.keys), time);
     let t = found.fraction;
     let first = entry.first_value + pair - index * params.targets;
-    // At the last key the fraction is 0.
+    // The fraction is 0 at the last key.
     let is_between = t > 0.0;
     var weight = 0.0;
     if entry.interpolation == INTERPOLATION_SPLINE {

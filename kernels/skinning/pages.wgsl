@@ -13,13 +13,13 @@ struct PageParams {
     instances: u32,
     // Number of clusters of the mesh, and of table entries per instance.
     clusters: u32,
-    // Number of clusters at each level of detail.
+    // Number of clusters of the mesh at each level of detail.
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
 // State of the page assignment.
 struct PageState {
-    // Number of free pages. They are at the bottom of the stack.
+    // Number of free pages, whose indices are at the bottom of the stack.
     free: u32,
     // Number of instances that lacked a page in the last frame. The number is 0, because the host provides enough pages.
     short: u32,
@@ -33,7 +33,7 @@ struct PageState {
 @group(0) @binding(2) var<storage, read_write> held: array<u32>;
 // Page of each cluster of each instance, or `NO_PAGE`.
 @group(0) @binding(3) var<storage, read_write> table: array<u32>;
-// Stack of free pages. The last one is handed out first.
+// Stack of the indices of free pages. The last one is handed out first.
 @group(0) @binding(4) var<storage, read_write> stack: array<u32>;
 // State of the page assignment.
 @group(0) @binding(5) var<storage, read_write> state: PageState;

@@ -33,7 +33,7 @@ struct SelectParams {
     vertices: u32,
     // Number of morph targets.
     targets: u32,
-    // Number of clusters at each level of detail.
+    // Number of clusters of the mesh at each level of detail.
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 

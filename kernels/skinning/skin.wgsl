@@ -7,14 +7,14 @@ import package::wgsl::skinning::page::NO_PAGE;
 import package::wgsl::skinning::rows::{Rows, rows_of_dual, unit_or};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
-// Whether the palette holds dual quaternions instead of matrices.
+// Whether the palette holds dual quaternions and stretches instead of matrices.
 override DUAL: bool = false;
 // Whether each instance has morphed vertices of its own, in the layout of the output. If false, all instances use the mesh's
 // vertices.
 override MORPHED: bool = false;
 // Whether the output lies in pages. If so, clusters without a page are skipped.
 override PAGED: bool = false;
-// With PAGED, whether the positions of the last frame are kept.
+// Whether the positions of the last frame are kept; only with PAGED.
 override KEEP: bool = false;
 
 // Parameters of the kernel `skinning/skin`.
@@ -29,7 +29,7 @@ struct SkinParams {
     instances: u32,
     // Index in `skinned` of the last positions, two pairs per vertex; used with KEEP.
     last: u32,
-    // Number of clusters at each level of detail.
+    // Number of clusters of the mesh at each level of detail.
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 

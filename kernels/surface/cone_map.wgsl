@@ -66,7 +66,7 @@ fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
     let away = vec2<f32>(abs(offset));
     let center = max(away - 0.5, vec2<f32>(0.0));
     let direction = center / max(length(center), 0.5);
-    // Distances from the nearest edge of the own cell to the near and the far edge of the leaf.
+    // Distances from the nearest edge of the own cell to the near edge and to the far edge of the leaf.
     let near = max(away - 1.0, vec2<f32>(0.0)) * direction;
     let far = away * direction;
     // The corners are selected by sign, because the position of the leaf decides which side is near.

@@ -29,7 +29,7 @@ struct ShadePoint {
     scale: f32,
     // Point where the eye's ray meets the polygon, in world space.
     position: vec3<f32>,
-    // World units per uv unit.
+    // Number of world units per uv unit.
     world: f32,
     // Ray from the eye.
     ray: SurfaceRay,

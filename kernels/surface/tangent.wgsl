@@ -69,7 +69,7 @@ fn unit(vector: vec3<f32>) -> vec3<f32> {
     return vector * inverseSqrt(dot(vector, vector));
 }
 
-// The contribution of a corner's triangle to the corner's vertex.
+// Contribution of a triangle to the vertex at one of its corners. `normal` is the vertex's unit normal.
 fn contribution(corner: u32, normal: vec3<f32>) -> Contribution {
     let nothing = Contribution(vec3<f32>(0.0), 0.0, 0.0);
     let first = corner - corner % 3u;

@@ -9,7 +9,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let window = id.z;
-    // The coarse window begins one or two fine points before the fine one.
+    // The coarse window begins one or two fine points before the fine window.
     let shift = 2 - (origins[window] & vec2<i32>(1));
     let cell = vec2<i32>(id.xy) + shift - 1;
     let at = 2 * cell - shift;

@@ -82,7 +82,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 
 // State of the sample at an index, before the cycle.
 fn cell_at(at: u32) -> Cell {
-    // In the first cycle, the buffer has no valid content and may be shorter.
+    // In the first cycle, the buffer of flows has no valid content and may be shorter.
     let flow = select(vec4<i32>(0), flows[at], params.wet != 0);
     let shares = vec4<i32>(flow.z & 0xffff, flow.z >> 16u, flow.w & 0xffff, flow.w >> 16u);
     return Cell(windows[at], flow.x, flow.y, shares);
@@ -155,8 +155,8 @@ fn discharge(own: i32, eighths: i32) -> i32 {
     return (own >> 2u) + eighths + (eighths >> 1u);
 }
 
-// Slope of a surface, in 1/4096, from its falls to the four neighbours. The length of the gradient is approximated by its
-// larger component plus three eighths of the smaller one.
+// Slope of the water's surface, in 1/4096, from the falls to the four neighbours. The length of the gradient is approximated:
+// its larger component plus three eighths of its smaller component.
 fn slope(falls: vec4<i32>) -> i32 {
     let steepest = clamp(max(falls.xz, falls.yw), vec2<i32>(0), vec2<i32>(params.steepest));
     let slopes = ((steepest >> vec2<u32>(params.slope_shift)) * params.slope_factor) >> vec2<u32>(15u);
@@ -196,7 +196,8 @@ fn next_shares(flux: vec4<i32>, water: i32) -> vec4<i32> {
     return (vec4<i32>(shares) * 3) >> vec4<u32>(2u);
 }
 
-// floor(amount * share / 32768) for amounts of 0 to 2^30 and shares of 0 to 32768, or any amount and shares of at most 2048.
+// floor(amount * share / 32768), per lane. Amounts of 0 to 2^30 may have shares of 0 to 32768. Any other amount may have shares
+// of at most 2048.
 fn part(amounts: vec4<i32>, shares: vec4<i32>) -> vec4<i32> {
     let bits = vec4<u32>(15u);
     return (amounts >> bits) * shares + (((amounts & vec4<i32>(32767)) * shares) >> bits);

@@ -10,7 +10,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let patch_index = id.z;
     let at = vec2<i32>(id.xy);
-    // The number of cells along an edge is a power of two. The first cell follows the last.
+    // The number of cells along an edge is a power of two. The first cell follows the last one.
     let mask = i32(level.coarse_width) - 2;
     let cell = at & vec2<i32>(mask);
     let before = (at + mask) & vec2<i32>(mask);

@@ -10,7 +10,7 @@ struct ClipEntry {
     first_timeline: u32,
     // Number of the clip's timelines.
     timelines: u32,
-    // Duration in seconds.
+    // Duration of the clip in seconds.
     duration: f32,
     // Index of the clip's first row in gate tables. A clip has one row per time of its first timeline, and one row for the
     // whole clip.
@@ -29,7 +29,8 @@ struct Timeline {
 struct KeyframeCursor {
     // Index in the timeline of the key before the time.
     key: u32,
-    // Fraction of the interval from that key to the next, 0 to below 1. It is 0 before the first key and after the last.
+    // Fraction of the interval from `key` to the next key, 0 to below 1. The fraction is 0 before the first key and after the
+    // last.
     fraction: f32,
 }
 

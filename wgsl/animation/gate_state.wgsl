@@ -31,7 +31,7 @@ struct ClipClock {
     row: u32,
     // Progress word: the fraction of the interval to the next row, 0 to FRACTION_ONE, and the [`UpdateReason`].
     fraction_and_reason: u32,
-    // Index of the clip.
+    // Index of the clip in its set.
     clip: u32,
     // Row at the look-ahead time, for which bones may be sampled ahead. It equals `row` if there is no look-ahead time.
     ahead_row: u32,

@@ -19,9 +19,9 @@ fn slerp_weights(t: vec2<f32>, less_one: f32) -> vec2<f32> {
     return t * sum;
 }
 
-// Spherical interpolation of unit quaternions (x, y, z, w) at constant speed on the shortest arc, for `t` from 0 to 1. Their
-// dot product must not be negative. The arc is halved: the polynomial runs from the nearer end to the unit quaternion in the
-// middle. The error is within 1e-6.
+// Spherical interpolation of unit quaternions (x, y, z, w) at constant speed on the shortest arc, for `t` from 0 to 1. The dot
+// product of `a` and `b` must not be negative. The arc is halved: the polynomial runs from the nearer end to the unit
+// quaternion in the middle. The error is within 1e-6.
 fn slerp(a: vec4<f32>, b: vec4<f32>, t: f32) -> vec4<f32> {
     let cosine = dot(a, b);
     let inverse = inverseSqrt(2.0 + 2.0 * cosine);

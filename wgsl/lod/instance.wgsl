@@ -25,7 +25,7 @@ struct SceneInstance {
     flags: u32,
     // Position of the instance relative to the cell's corner, in world units.
     offset: vec3<f32>,
-    // User data: a word that the caller's shading reads.
+    // User data: a word that the caller's shading function reads.
     user_data: u32,
     // Rotation: a unit quaternion (x, y, z, w).
     rotation: vec4<f32>,
@@ -37,7 +37,7 @@ struct SceneInstance {
     bounding_sphere: vec4<f32>,
 }
 
-// The columns of the model's linear transform into the world.
+// Linear part of a transform from model to world space, as columns.
 struct Axes {
     // Image of the model's x axis.
     x: vec3<f32>,
@@ -47,7 +47,7 @@ struct Axes {
     z: vec3<f32>,
 }
 
-// Linear part of an instance's transform: the scale, then the rotation.
+// Linear part of an instance's transform: first the scale, then the rotation.
 fn instance_axes(instance: SceneInstance) -> Axes {
     let q = instance.rotation;
     let s = instance.scale;

@@ -1,4 +1,4 @@
-// Views of a scene: the input of instance selection.
+// Views of a scene, as the selection of instances reads them.
 
 // Largest number of cameras in a view that decide levels of detail.
 const VIEW_CAMERAS = 4u;
@@ -32,7 +32,7 @@ struct SelectView {
     cameras: array<LodCamera, 4>,
     // Cell of the view. Its corner is the origin of all positions in the view.
     cell: vec3<i32>,
-    // Visibility mask, 16 bits: the view sees instances whose mask shares a bit with it.
+    // Visibility mask, 16 bits: the view sees instances whose mask has a bit in common with this one.
     mask: u32,
     // Number of valid cameras, 1 to `VIEW_CAMERAS`.
     camera_count: u32,

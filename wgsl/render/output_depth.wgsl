@@ -2,7 +2,7 @@
 
 // Whether the colour pass writes the depth of the surface (true) or of the polygon (false).
 override OWN_DEPTH: bool = false;
-// Whether depth is reversed: 1 at the near plane, decreasing with distance.
+// Whether depth is reversed: 1 at the near plane, and smaller with distance.
 override REVERSED: bool = false;
 
 // Depth for a prepass: equal to or slightly behind the depth that the colour pass writes for the same fragment. Two pipelines

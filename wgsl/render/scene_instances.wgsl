@@ -123,7 +123,7 @@ fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec
     let along = vec3<f32>(
         dot(placement.x.xyz, tangent.xyz), dot(placement.y.xyz, tangent.xyz), dot(placement.z.xyz, tangent.xyz));
     let determinant = dot(placement.x.xyz, cross(placement.y.xyz, placement.z.xyz));
-    // If the placement mirrors, cofactors turn the normal inwards, and the sign of the bitangent flips.
+    // If the placement mirrors, cofactors turn the normal inwards, and the bitangent changes its sign.
     let side = select(1.0, -1.0, determinant < 0.0);
     return SceneVertex(
         pushed_position(entry, placement, placed_position(placement, position)), side * placed_normal(placement, normal),

@@ -77,7 +77,8 @@ fn words_outside(words: vec4<u32>, is_front: bool) -> bool {
     return is_front == (scene_word_counter_clockwise(words.w) != 0u);
 }
 
-// Default surface without an instance: white, opaque and lit, with the triangle's geometry. `scene_surface` adds the instance.
+// Default surface without an instance's properties: white, opaque and lit, with the triangle's geometry. `scene_surface` adds
+// the properties.
 fn triangle_surface(in: SceneFragment) -> Surface {
     var surface: Surface;
     surface.position = in.position;

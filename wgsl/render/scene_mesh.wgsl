@@ -22,7 +22,7 @@ const CUTOFF_DITHERED: f32 = -2.0;
 // Texture layer of materials that have no texture.
 const NO_LAYER: u32 = 4294967295u;
 
-// A material in the table of its part.
+// A material in the material table of a part, a piece of the mesh with draws of its own.
 struct SceneMaterial {
     // Linear RGB and alpha, which multiply the texture.
     color: vec4<f32>,

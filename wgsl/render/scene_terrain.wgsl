@@ -8,7 +8,7 @@ import package::wgsl::terrain::slope::slope_normal;
 import package::wgsl::terrain::texturing::{TRIPLANAR_PLANES, color_variation, triplanar_uv, triplanar_weight, triplanar_weights, varied};
 import package::wgsl::terrain::zones::{Zone, steepness, zone_blend, zone_blended, zone_color};
 
-// Whether to draw triangle edges on unlit, dark ground.
+// Whether to draw a wireframe: triangle edges on unlit, dark ground.
 override WIREFRAME: bool = false;
 
 // Linear colour of triangle edges in the wireframe.
@@ -45,7 +45,7 @@ struct TerrainParams {
     zone_count: u32,
     // 1 if zone weights are added without normalization, 0 if they are normalized.
     additive: u32,
-    // Number of planes that textures are projected from: 1 (from above) or 3 (triplanar).
+    // Number of planes from which textures are projected: 1 (from above) or 3 (triplanar).
     planes: u32,
     // Strength of the colour variation, 0 to 1.
     variation: f32,
@@ -112,7 +112,7 @@ fn terrain_last_position(instance: u32, vertex: u32) -> vec3<f32> {
 // Linear colour of the ground at texture coordinates, a height in world units, and a unit normal.
 fn ground_color(uv: vec2<f32>, height: f32, normal: vec3<f32>) -> vec3<f32> {
     let tiles = vec3<f32>(uv.x, height * terrain.tiles_per_unit, uv.y);
-    // Derivatives need uniform control flow, so they are taken here and not in the loop.
+    // Derivatives need uniform control flow, so they are computed before the loop.
     let tiles_dx = dpdx(tiles);
     let tiles_dy = dpdy(tiles);
     let weights = select(vec3<f32>(1.0, 0.0, 0.0), triplanar_weights(normal), terrain.planes == TRIPLANAR_PLANES);

@@ -12,7 +12,7 @@ override MORPHED: bool = false;
 // vertex itself.
 // packed Partner: index 24, level 8
 
-// Location of a mesh's vertex data.
+// Location of a mesh's vertex data in the buffers.
 struct MeshParams {
     // Number of clusters of the mesh if each instance has vertices of its own, in pages. 0 if all instances share the mesh's
     // vertices.

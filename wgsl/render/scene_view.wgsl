@@ -19,7 +19,7 @@ struct SceneView {
     side: f32,
     // Cell of the view: all positions are relative to this cell's corner.
     cell: vec3<i32>,
-    // Size of a shadow map texel in world units.
+    // Edge length of a shadow map texel, in world units.
     shadow_texel: f32,
     // Rows for u, v and depth of the transform to the shadow map, from positions relative to the corner of the view's cell. All
     // rows are 0 in a view without a shadow.

@@ -24,7 +24,7 @@ fn surface_shifted(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarc
     return hit;
 }
 
-// Kaneko's parallax mapping.
+// Parallax mapping by Kaneko, without a limit of the shift.
 fn surface_parallax(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     return surface_shifted(heights, ray, march, 1.0);
 }

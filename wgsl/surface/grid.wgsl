@@ -1,7 +1,6 @@
-// The grid of bilinear cells under a ray. A cell lies between four texel centers. With wrap addressing a tile
-// has as many cells as texels. With clamp addressing it has one more per axis, and the outermost cells extend
-// to infinity with constant heights. In both modes the cells cover the whole plane, so a ray never leaves the
-// grid.
+// Grid of bilinear cells under a ray. A cell lies between four texel centers. With wrap addressing, a tile has the same number
+// of cells and texels. With clamp addressing, a tile has one more cell per axis, and the outermost cells extend to infinity
+// with constant heights. In both modes the cells cover the whole plane, so a ray never leaves the grid.
 import package::wgsl::surface::ray::{SURFACE_WRAP, SurfaceRay};
 
 // A distance in cells that is longer than any ray's path.

@@ -37,7 +37,7 @@ fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     let width = 1.0 / f32(steps);
     var bracket = SurfaceBracket(0.0, 1.0, 0.0, 0.0, 0u);
     for (var step = 1u; step <= SURFACE_MAX_STEPS; step++) {
-        // The bottom is on or below every surface, so the last step always stops.
+        // The bottom of the volume is on or below every surface, so the last step always stops.
         let parameter = select(f32(step) * width, 1.0, step >= steps);
         let height = surface_height(heights, surface_at(ray, parameter), march.mip, march.address);
         bracket.samples += SURFACE_BILINEAR;
@@ -52,7 +52,7 @@ fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     return bracket;
 }
 
-// Relief mapping: linear search, then binary search.
+// Relief mapping: a linear search, then a binary search.
 fn surface_relief(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
@@ -82,8 +82,7 @@ fn surface_narrowed(
     return surface_point(ray, 0.5 * (low + high), loads, SURFACE_HIT);
 }
 
-// Parallax occlusion mapping: linear search, then the intersection with the segment between the last two
-// heights.
+// Parallax occlusion mapping: a linear search, then the intersection with the segment between the last two heights.
 fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);

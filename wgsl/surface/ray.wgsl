@@ -19,9 +19,9 @@ const SURFACE_LEAST_COSINE: f32 = 0.0078125;
 
 // A ray through the relief volume, in tangent space. At parameter t, the ray is at uv origin + t · slope and at height 1 − t.
 struct SurfaceRay {
-    // uv where the ray enters the volume, at height 1.
+    // uv coordinates where the ray enters the volume, at height 1.
     origin: vec2<f32>,
-    // Change of uv while the ray falls to height 0.
+    // Change of uv while the ray falls from height 1 to height 0.
     slope: vec2<f32>,
     // Cosine of the angle between the direction to the eye and the normal. A ray with a cosine of 0 or less is a miss.
     cosine: f32,
@@ -39,7 +39,7 @@ struct SurfaceMarch {
     max_steps: u32,
     // Number of binary steps after the linear ones.
     binary_steps: u32,
-    // Mip level of the height map, chosen once per fragment. Acceleration maps belong to level 0.
+    // Mip level of the height map, chosen once per fragment. Acceleration maps always use level 0.
     mip: u32,
 }
 
@@ -47,11 +47,11 @@ struct SurfaceMarch {
 struct SurfaceHit {
     // Displaced texture coordinates. They lie outside the tile if the ray left the tile.
     uv: vec2<f32>,
-    // Height of the surface at the hit.
+    // Height of the surface at the hit, 0 (bottom) to 1 (top).
     height: f32,
     // Parameter of the ray at the hit; it determines the depth.
     parameter: f32,
-    // Number of texels loaded, including those of acceleration maps.
+    // Number of texels loaded, from the height map and the acceleration map.
     samples: u32,
     // Outcome: SURFACE_MISS, SURFACE_HIT or SURFACE_EXHAUSTED.
     outcome_code: u32,

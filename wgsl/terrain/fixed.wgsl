@@ -1,5 +1,5 @@
-// Exact integer arithmetic of terrain heights (i32, Q15.16). No operation here can overflow for heights
-// within the bound that the host checks (2^30 - 1), so every device gives the same bits.
+// Exact integer arithmetic of terrain heights (i32, Q15.16). No operation overflows for heights within the bound that the host
+// checks, 2^30 - 1. Every device therefore gives the same bits.
 
 // One world unit of height, in 1/65536 units.
 const HEIGHT_ONE: i32 = 65536;

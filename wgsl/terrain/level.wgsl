@@ -58,7 +58,7 @@ fn offsets(range: u32, x: vec4<i32>, y: vec4<i32>) -> vec4<i32> {
 fn injected_four(window: u32, x: vec4<i32>, y: vec4<i32>, heights: vec4<i32>) -> vec4<i32> {
     var result = heights;
     if FEATURES != FEATURES_NONE {
-        // A loop, because one driver's compiler takes gigabytes for branches that are inlined dozens of times.
+        // This is a loop because one driver's compiler takes gigabytes for branches that are inlined dozens of times.
         for (var lane = 0u; lane < 4u; lane++) {
             result[lane] = injected(level.features, window, vec2<i32>(x[lane], y[lane]), heights[lane]);
         }

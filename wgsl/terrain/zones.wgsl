@@ -1,5 +1,5 @@
-// Zones of ground by height and steepness (B section 3.3.1, equation 3.6), blended by the height maps of their textures
-// (height blending, B section 2.3.4), to import into any material shader.
+// Zones of ground by height and steepness (B section 3.3.1, equation 3.6). The height maps of their textures blend the zones
+// (height blending, B section 2.3.4). Any material shader may import these functions.
 //
 //     var blend = zone_blend();
 //     for (var z = 0u; z < count; z++) { blend = zone_blended(blend, zones[z], height, steepness(normal), texel_of(z)); }
@@ -25,7 +25,7 @@ struct Zone {
 struct ZoneBlend {
     // Sum of the zones' colours, each weighted by its zone's weight and height map.
     color: vec3<f32>,
-    // Sum of the weights of `color`.
+    // Sum of the factors with which zones are weighted in `color`.
     total: f32,
     // Sum of the zones' weights, without the influence of height maps.
     weight: f32,
