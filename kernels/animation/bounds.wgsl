@@ -1,30 +1,37 @@
-// Axis-aligned bounds of instances in model space, around one sphere per bone: it has the bone's radius and is transformed by
-// the bone's matrix. A workgroup handles all bones of one instance.
+// Axis-aligned bounds of instances in model space, around one sphere per bone. Each sphere has the bone's radius and is
+// transformed by the bone's matrix. A workgroup handles all bones of one instance.
 
+// Parameters of the kernel `animation/bounds`.
 struct BoundsParams {
+    // Number of instances.
     instances: u32,
+    // Number of bones per instance.
     bones: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: BoundsParams;
-// Three rows per bone.
+// Model matrices: three rows per bone of each instance.
 @group(0) @binding(1) var<storage, read> model_matrices: array<vec4<f32>>;
-// The radius of each bone, in its own space.
+// Radius of each bone in the bone's own space.
 @group(0) @binding(2) var<storage, read> bone_radii: array<f32>;
-// Lower and upper corner per instance.
+// Out: lower and upper corner of each instance's box.
 @group(0) @binding(3) var<storage, read_write> bounds: array<vec4<f32>>;
 
+// Number of threads in a workgroup.
 const THREADS = 64u;
-// Factor by which extents grow, for rounding.
+// Factor by which extents grow, to cover rounding errors.
 const GROWTH: f32 = 1.0 + 1.0 / 524288.0;
-// Fraction of the center's distance that extents grow by, for rounding.
+// Fraction of the center's distance that is added to extents, to cover rounding errors.
 const OF_CENTER: f32 = 1.0 / 2097152.0;
-// Length that is added to a row, 2⁻⁶², because squares may be flushed to 0.
+// Length that is added to a row: 2⁻⁶². It is needed because devices may flush squares to 0.
 const LEAST: f32 = 2.16840434e-19;
-// The largest f32, with exactly these digits: some compilers refuse larger literals.
+// The largest f32. The literal has exactly these digits because some compilers refuse larger literals.
 const LARGEST = 3.4028234663852886e38;
 
+// Lower corner of the box of each thread's bones.
 var<workgroup> lows: array<vec3<f32>, THREADS>;
+// Upper corner of the box of each thread's bones.
 var<workgroup> highs: array<vec3<f32>, THREADS>;
 
 @compute @workgroup_size(THREADS)

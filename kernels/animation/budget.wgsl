@@ -1,73 +1,94 @@
-// Selects the bones that are sampled when their number is limited: those whose stale transforms are expected to be most
-// visible. There are five stages, one dispatch each. Equal ranks are served in the order of instances and slots, so that every
-// device decides identically.
+// Selects the bones to sample when their number is limited: the bones whose outdated transforms are expected to be most
+// visible. There are five stages, one dispatch each. Bones of equal rank are served in the order of instances and slots, so
+// that every device decides identically.
 import package::wgsl::animation::gate_state::{Lod, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, ClipClock, fraction_of, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between};
 
 // One of the constants below.
 override STAGE: u32 = 0;
 
-// A thread ranks up to 32 bones of one instance and counts the ranks.
+// Stage: a thread ranks up to 32 bones of one instance and counts the ranks.
 const RANK = 0u;
-// One workgroup finds the lowest rank that is served.
+// Stage: one workgroup finds the lowest rank that is served.
 const CHOOSE = 1u;
-// A thread selects the bones above that rank and counts the bones of that rank.
+// Stage: a thread selects the bones above that rank and counts the bones of that rank.
 const DECIDE = 2u;
-// One workgroup computes prefix sums of these counts over the instances.
+// Stage: one workgroup computes prefix sums of these counts over the instances.
 const SUM = 3u;
-// A thread selects bones of that rank while the budget lasts.
+// Stage: a thread selects bones of that rank while the budget lasts.
 const SETTLE = 4u;
 
+// Number of threads in a workgroup.
 const WIDTH = 64u;
+// Number of ranks; higher ranks are served first.
 const RANKS = 1024u;
 
+// Parameters of the kernel `animation/budget`.
 struct BudgetParams {
+    // Number of instances.
     instances: u32,
+    // Number of bones per instance.
     bones: u32,
-    // Words of bits per instance.
+    // Number of 32-bit words per instance with one bit per bone.
     words: u32,
-    // Entries per row of the table.
+    // Number of entries per row of the table.
     stride: u32,
-    // The largest number of bones that may be sampled.
+    // Largest number of bones that may be sampled in a frame.
     budget: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: BudgetParams;
+// Level of detail of each instance.
 @group(0) @binding(1) var<storage, read> lods: array<Lod>;
+// Clip clock of each instance.
 @group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
-// Per clip: the index of its last row in `table`, then one bit per bone that moves in it.
+// Per clip: the index of its last row in `table`, then one bit per bone that the clip moves.
 @group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
-// Per bone: the accumulated motion (x) and its rise to the next row (y). In a clip's last row, x is the motion over the whole
-// clip.
+// Per row and bone: the accumulated motion (x) and its increase up to the next row (y). In a clip's last row, x is the motion
+// over the whole clip.
 @group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
-// Per bone: the accumulated motion when it was last sampled.
+// Accumulated motion of each bone of each instance when the bone was last sampled.
 @group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
-// One bit per bone. Then, in the same layout, the bones that are sampled ahead: none.
+// Out: the bones that are sampled, one bit per bone. A second section in the same layout holds the bones that are sampled
+// ahead, which are none here.
 @group(0) @binding(6) var<storage, read_write> bits: array<u32>;
-// Ranks, two per word and 16 words for each word of bits; then one bit for each bone of the lowest rank that is
-// served.
+// Ranks of bones, two per word and 16 words for each word of bits. Then one bit per bone, set for bones of the lowest rank that
+// is served.
 @group(0) @binding(7) var<storage, read_write> ranks: array<u32>;
-// The number of bones of each rank; then the values at the indices below; then, from TIES on, per instance the number of bones
-// of the lowest rank.
+// Number of bones of each rank; then the values at the indices FORCED, LOWEST and ROOM. From TIES on: the number of bones of
+// the lowest served rank per instance.
 @group(0) @binding(8) var<storage, read_write> tally: array<atomic<u32>>;
 
+// Index in `tally`: number of bones that must be sampled.
 const FORCED = 1024u;
+// Index in `tally`: the lowest rank that is served.
 const LOWEST = 1025u;
+// Index in `tally`: number of bones of the lowest rank that the budget permits.
 const ROOM = 1026u;
+// Index in `tally` of the first instance's number of bones of the lowest rank.
 const TIES = 1027u;
 
+// Sum of counts per thread.
 var<workgroup> sums: array<u32, WIDTH>;
 
+// Up to 32 bones of one instance, which share a word of bits.
 struct WordOfBones {
+    // Index of the instance.
     instance: u32,
-    // Index of the first of these bones in the instance.
+    // Slot of the first of these bones in the instance.
     slot: u32,
+    // Bones that may be sampled, one bit each.
     candidates: u32,
+    // Bones that must be sampled, one bit each.
     forced: u32,
+    // Row of the table with the motion over the whole clip.
     periods: u32,
+    // Clip clock of the instance.
     clip_clock: ClipClock,
 }
 
+// The bones of a word of bits. `index` is the word's index among all instances.
 fn word_of_bones_at(index: u32) -> WordOfBones {
     let instance = index / params.words;
     let word = index - instance * params.words;
@@ -80,11 +101,12 @@ fn word_of_bones_at(index: u32) -> WordOfBones {
     return WordOfBones(instance, 32u * word, candidates, forced, animated_bones[record], clip_clock);
 }
 
+// Whether the budget permits all bones of all instances.
 fn is_unlimited() -> bool {
     return params.budget >= params.instances * params.bones;
 }
 
-// The rank, 1 to 768, by the logarithm of missed * weight: sixteen ranks per octave.
+// Rank, 1 to 768, of the product missed * weight on a logarithmic scale: sixteen ranks per octave.
 fn rank_of(missed: u32, weight: u32) -> u32 {
     let low = (missed & 0xffffu) * weight;
     let high = (missed >> 16u) * weight + (low >> 16u);
@@ -104,15 +126,18 @@ fn rank_of(missed: u32, weight: u32) -> u32 {
     return 1u + 16u * lead + (fine & 15u);
 }
 
+// Accumulated motion of a bone at the current time.
 fn motion_now(word_of_bones: WordOfBones, bit: u32) -> u32 {
     return motion_at(table[word_of_bones.clip_clock.row * params.stride + word_of_bones.slot + bit], fraction_of(word_of_bones.clip_clock));
 }
 
+// Motion of a bone since it was last sampled. `last` is the accumulated motion at that time.
 fn missed_by(word_of_bones: WordOfBones, bit: u32, last: u32) -> u32 {
     let period = table[word_of_bones.periods * params.stride + word_of_bones.slot + bit].x;
     return motion_between(motion_now(word_of_bones, bit), last, period);
 }
 
+// Stage RANK for one word of bones.
 fn rank(index: u32) {
     let word_of_bones = word_of_bones_at(index);
     if word_of_bones.slot == 0u {
@@ -143,6 +168,7 @@ fn rank(index: u32) {
     }
 }
 
+// Stage CHOOSE: finds the lowest rank that is served, and clears the counts.
 fn choose(lane: u32) {
     let chunk = RANKS / WIDTH;
     let first = chunk * lane;
@@ -153,7 +179,7 @@ fn choose(lane: u32) {
     sums[lane] = sum;
     workgroupBarrier();
     if lane == 0u {
-        // The part of the budget that forced bones leave.
+        // Number of bones that the budget permits besides the forced bones.
         var room = params.budget - min(atomicExchange(&tally[FORCED], 0u), params.budget);
         var block = WIDTH;
         while block > 0u && sums[block - 1u] <= room {
@@ -180,6 +206,7 @@ fn choose(lane: u32) {
     }
 }
 
+// Stage DECIDE for one word of bones.
 fn decide(index: u32) {
     let word_of_bones = word_of_bones_at(index);
     let lowest = atomicLoad(&tally[LOWEST]);
@@ -204,6 +231,7 @@ fn decide(index: u32) {
     }
 }
 
+// Stage SUM: replaces the counts from TIES on by their exclusive prefix sums.
 fn sum_ties(lane: u32) {
     let chunk = (params.instances + WIDTH - 1u) / WIDTH;
     let first = min(lane * chunk, params.instances);
@@ -223,6 +251,7 @@ fn sum_ties(lane: u32) {
     }
 }
 
+// Stage SETTLE for one word of bones. Also stores the accumulated motion of the selected bones.
 fn settle(index: u32) {
     let word_of_bones = word_of_bones_at(index);
     let first_ties = 16u * params.instances * params.words;

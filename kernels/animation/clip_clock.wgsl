@@ -1,43 +1,51 @@
-// The clip clock of each instance: its integer position on the common timeline of its clip, and the update reason. Gates decide
-// by it. A thread handles one instance.
+// Clip clock of each instance: its integer position on the common timeline of its clip, and the update reason. Gates decide by
+// this clock. A thread handles one instance.
 import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::gate_state::{FRACTION_ONE, LOD_FORCED, LOD_HIDDEN, Lod, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock, progress_word};
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::keyframe_cursor;
 
+// Parameters of the kernel `animation/clip_clock`.
 struct ClipClockParams {
+    // Number of instances.
     instances: u32,
-    // Elapsed time in seconds, the same for all instances. At 0, the clip time of an instance is its `start`.
+    // Elapsed time in seconds, the same for all instances. At elapsed time 0, the clip time of an instance is its `start`.
     elapsed: f32,
-    // Number of layers above the base.
+    // Number of layers above the base layer.
     layers: u32,
-    // Seconds by which bones may be sampled ahead.
+    // Look-ahead in seconds: the time by which bones may be sampled ahead; 0 for none.
     ahead: f32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: ClipClockParams;
+// Clip and playback of each instance, layer by layer.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
+// Location of each clip's data in the set.
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
+// Timelines of all clips.
 @group(0) @binding(3) var<storage, read> timelines: array<Timeline>;
-// Binding 4 holds the key times. One level of detail per instance.
+// Binding 4 holds the key times.
+// Level of detail of each instance.
 @group(0) @binding(5) var<storage, read> lods: array<Lod>;
-// Weights of the layers above the base, layer by layer.
+// Weights of the layers above the base layer, layer by layer, one per instance.
 @group(0) @binding(6) var<storage, read> layer_weights: array<f32>;
-// Per instance, of the last frame. x: clip + 1, with BLENDED if layers were above it; 0 if no pose is stored. y: hash of the
-// clips of these layers. z: time inside the clip. w: look-ahead time. Times are f32 as bits.
+// State of each instance in the last frame. x: clip + 1, with BLENDED if layers were above the clip; 0 if no pose is stored. y:
+// hash of the clips of these layers. z: time inside the clip. w: look-ahead time. Times are f32 as bits.
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
-// Clip clock of each instance.
+// Out: clip clock of each instance.
 @group(0) @binding(8) var<storage, read_write> clip_clocks: array<ClipClock>;
 
+// Flag in the first word of `history`: layers were blended over the clip.
 const BLENDED: u32 = 0x80000000u;
-// The factor of the hash of clips above the base.
+// Factor of the hash of clips above the base layer.
 const CLIP_HASH_FACTOR: u32 = 31u;
 
 // Clip index that no instance has.
 const NO_CLIP: u32 = 0xffffffffu;
 
-// A hash of the clips that play above the base layer; 0 if there are none. `base` is the clip of the base layer. Driver
+// Hash of the clips that play above the base layer; 0 if there are none. `base` is the clip of the base layer. Driver
 // workaround: where uniforms alone decide loops and branches, lavapipe compiles the kernel again in each submission. The loop
 // therefore also depends on `base`, which is never NO_CLIP.
 fn clips_above(instance: u32, base: u32) -> u32 {
@@ -50,12 +58,12 @@ fn clips_above(instance: u32, base: u32) -> u32 {
     return clips;
 }
 
-// The fraction of a cursor, in 1/FRACTION_ONE.
+// Fraction of a cursor in fixed point, in 1/FRACTION_ONE.
 fn whole_fraction(cursor: KeyframeCursor) -> u32 {
     return u32(clamp(cursor.fraction, 0.0, 1.0) * f32(FRACTION_ONE));
 }
 
-// The clip clock of an instance. `flags` are those of its level of detail. Updates its history.
+// Clip clock of an instance. `flags` are the flags of its `Lod`. Also updates the instance's history.
 fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
     let instance = instances[index];
     let clip = clips[instance.clip];

@@ -1,5 +1,5 @@
-// Turns bits into lists: the active pairs of instance and bone, and the instances that have any. Also marks slots with an
-// active bone at or above them, which must be updated, and writes the arguments of the indirect dispatches. On every device,
+// Turns bits into lists: the active pairs of instance and bone, and the instances with active pairs. Also marks the slots with
+// an active bone at or above them, which must be updated, and writes the arguments of the indirect dispatches. On every device,
 // lists are in the order of instances and, within an instance, of slots. There are three stages, one dispatch each.
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::order::Slot;
@@ -8,59 +8,68 @@ import package::wgsl::dispatch::rows_of_workgroups;
 // One of the constants below.
 override STAGE: u32 = 0;
 
-// A thread spreads the active bits of one instance to all slots below them, and counts the active ones.
+// Stage: a thread spreads the active bits of one instance to all slots below them, and counts the active bits.
 const SPREAD = 0u;
-// One workgroup sums the counts, lists the instances and writes the arguments.
+// Stage: one workgroup sums the counts, lists the instances and writes the arguments.
 const SCAN = 1u;
-// A thread lists the pairs of one word.
+// Stage: a thread lists the pairs of one word of bits.
 const SCATTER = 2u;
 
+// Number of threads in a workgroup.
 const WIDTH = 64u;
 
+// Parameters of the kernel `animation/compact`.
 struct CompactParams {
+    // Number of instances.
     instances: u32,
+    // Number of bones per instance.
     bones: u32,
-    // Words of bits per instance.
+    // Number of 32-bit words per instance with one bit per slot.
     words: u32,
-    // Number of dispatches, after the first, that handle updated instances.
+    // Number of dispatches after the first one that handle updated instances.
     served: u32,
-    // The largest number of workgroups along x.
+    // Largest number of workgroups along x.
     most_groups: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: CompactParams;
-// One bit per slot of each instance, in three sections of the same layout: bones that are sampled, those of them that are
-// sampled ahead, and bones whose model matrices this frame updates.
+// One bit per slot of each instance, in three sections of the same layout: bones that are sampled, the subset that is sampled
+// ahead, and bones whose model matrices this frame updates.
 @group(0) @binding(1) var<storage, read_write> bits: array<u32>;
+// Bones in their order, parents first.
 @group(0) @binding(2) var<storage, read> slots: array<Slot>;
-// Updated bones. They accumulate over frames until all readers have followed them.
+// Updated bones, one bit per slot of each instance. The bits accumulate over frames until all readers have processed them.
 @group(0) @binding(3) var<storage, read_write> updated_bones: array<u32>;
-// Per instance. In: the number of active pairs. After the scan: the number of active pairs of all instances before it.
+// Per instance. In: the number of active pairs. Out, after SCAN: the number of active pairs of all instances before it.
 @group(0) @binding(4) var<storage, read_write> counts: array<u32>;
-// instance * bones + bone, with PAIR_AHEAD if it is sampled ahead.
+// Out: active pairs, instance * bones + bone, with PAIR_AHEAD if the bone is sampled ahead.
 @group(0) @binding(5) var<storage, read_write> pairs: array<u32>;
-// Workgroups along x, y and z for one thread per pair, and the number of pairs.
+// Out: numbers of workgroups along x, y and z for one thread per pair, and the number of pairs (w).
 @group(0) @binding(6) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
+// Out: indices of the instances with active pairs.
 @group(0) @binding(7) var<storage, read_write> updated_instances: array<u32>;
-// First the same for one thread per updated instance. Then dispatches with several threads per updated instance; their w holds
-// that number, also on input.
+// Out: dispatches, as numbers of workgroups along x, y and z. The first has one thread per updated instance; its w is the
+// number of updated instances. Others have several threads per updated instance; their w holds that number, also on input.
 @group(0) @binding(8) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
 
+// Sum per thread: active pairs (x) and updated instances (y).
 var<workgroup> sums: array<vec2<u32>, WIDTH>;
 
-// A mask of the bits from `start` to below `end`, both within 0..=32.
+// Mask of the bits from `start` to below `end`, both within 0..=32.
 fn run(start: u32, end: u32) -> u32 {
     let below = select(0xffffffffu, (1u << (end & 31u)) - 1u, end < 32u);
     return below & (0xffffffffu << start);
 }
 
-// Driver workaround: where uniforms alone decide a loop's end, lavapipe compiles the kernel again in each submission. Hence the
-// second condition of this loop and of the one in `scan`. It always holds: no subtree ends beyond the last bone.
+// Stage SPREAD for one instance. Driver workaround: where uniforms alone decide a loop's end, lavapipe compiles the kernel
+// again in each submission. Hence the second condition of this loop and of the loop in `scan`. The condition always holds,
+// because no subtree ends beyond the last bone.
 fn spread(instance: u32) {
     let first_word = instance * params.words;
     let all_words = params.instances * params.words;
     var count = 0u;
-    // The slot after the last updated one.
+    // End of the last updated subtree: the slot after its last one.
     var end = 0u;
     for (var word = 0u; word < params.words && end <= params.bones; word++) {
         let chosen = bits[first_word + word];
@@ -85,10 +94,12 @@ fn spread(instance: u32) {
     counts[instance] = count;
 }
 
+// Numbers of workgroups along x, y and z for a number of threads.
 fn dispatch_of(threads: u32) -> vec3<u32> {
     return rows_of_workgroups(threads / WIDTH + u32(threads % WIDTH > 0u), params.most_groups);
 }
 
+// Stage SCAN: prefix sums of the counts, the list of updated instances, and the arguments of dispatches.
 fn scan(lane: u32) {
     let chunk = (params.instances + WIDTH - 1u) / WIDTH;
     let first = min(lane * chunk, params.instances);
@@ -122,6 +133,7 @@ fn scan(lane: u32) {
     }
 }
 
+// Stage SCATTER for one word of bits.
 fn scatter(index: u32) {
     let instance = index / params.words;
     if instance >= params.instances {

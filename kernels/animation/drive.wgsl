@@ -1,30 +1,34 @@
-// Adds driven bones to the bones that a gate chose. They are sampled in every frame, at the time of the frame; the caller
+// Adds driven bones to the bones that a gate chose. Driven bones are sampled in every frame, at the frame's time; the caller
 // writes their local transforms after sampling. A thread handles one word of bits. Instances that no view sees are left
 // unchanged.
 import package::wgsl::animation::gate_state::{LOD_HIDDEN, Lod};
 
+// Parameters of the kernel `animation/drive`.
 struct DriveParams {
-    // Number of words with driven bones.
+    // Number of entries in `driven`.
     driven: u32,
     // Number of instances.
     instances: u32,
-    // Words of bits per instance.
+    // Number of 32-bit words per instance with one bit per slot.
     words: u32,
 }
 
-// The driven bones of a word of bits.
+// The driven bones of one instance in one word of bits.
 struct DrivenWord {
-    // instance * words + word.
+    // Index of the word: instance * words + word.
     at: u32,
-    // One bit per slot.
+    // Driven bones, one bit per slot.
     bones: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: DriveParams;
+// Words with driven bones.
 @group(0) @binding(1) var<storage, read> driven: array<DrivenWord>;
+// Level of detail of each instance.
 @group(0) @binding(2) var<storage, read> lods: array<Lod>;
-// One bit per slot of each instance, in two sections of the same layout: bones that are sampled, and those of them that are
-// sampled ahead.
+// One bit per slot of each instance, in two sections of the same layout: bones that are sampled, and the subset that is sampled
+// ahead.
 @group(0) @binding(3) var<storage, read_write> bits: array<u32>;
 
 @compute @workgroup_size(64)

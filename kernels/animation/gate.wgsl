@@ -1,6 +1,6 @@
-// Decides which bones of which instances are sampled this frame, one bit each. All arithmetic is on integers, so that every
-// device decides identically. A thread decides for up to 32 bones of one instance. With BOUNDED, it decides for all of them,
-// because parents pass their remaining error budget to their children.
+// Gate: decides which bones of which instances are sampled this frame, one bit each. All arithmetic is on integers, so that
+// every device decides identically. A thread decides for up to 32 bones of one instance. With BOUNDED, a thread decides for all
+// bones, because parents pass their remaining error budget to their children.
 import package::wgsl::animation::gate_state::{Lod, OMEGA_ONE, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, is_ahead, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between, scale_by_fraction};
 import package::wgsl::animation::order::NO_PARENT;
@@ -8,50 +8,62 @@ import package::wgsl::animation::order::NO_PARENT;
 // One of the constants below.
 override MODE: u32 = 0;
 
+// Mode: all bones that the clip moves are sampled.
 const OFF = 0u;
+// Mode: each bone skips one update per period, which depends on the bone's priority and Ω.
 const SKIP_PERIOD = 1u;
+// Mode: a fraction Ω of frames samples all bones of an instance; other frames sample none.
 const UNIFORM = 2u;
+// Mode: each bone is sampled with probability Ω.
 const RANDOM = 3u;
+// Mode: a bone is sampled when the motion that it missed exceeds its error budget.
 const BOUNDED = 4u;
 
+// Parameters of the kernel `animation/gate`.
 struct GateParams {
+    // Number of instances.
     instances: u32,
+    // Number of bones per instance.
     bones: u32,
-    // Words of bits per instance.
+    // Number of 32-bit words per instance with one bit per slot.
     words: u32,
-    // Entries per row of the table.
+    // Number of entries per row of the table.
     stride: u32,
-    // Ticks since the start.
+    // Number of ticks since the start.
     ticks: u32,
-    // Ticks since the last frame.
+    // Number of ticks since the last frame.
     frame_ticks: u32,
-    // Ticks of the longest period.
+    // Longest period, in ticks.
     period: u32,
-    // Frames since the start.
+    // Number of frames since the start.
     frame: u32,
-    // Row of the table with each slot's nearest animated ancestor: the nearest slot above it that the first clip moves. Rows
-    // for the other clips follow.
+    // Index of the table's row with each slot's nearest animated ancestor in the first clip: the nearest slot above it that the
+    // clip moves. Rows for the other clips follow.
     first_above: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: GateParams;
+// Level of detail of each instance.
 @group(0) @binding(1) var<storage, read> lods: array<Lod>;
+// Clip clock of each instance.
 @group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
-// Per clip: the index of its last row in `table`, then one bit per bone that moves in it.
+// Per clip: the index of its last row in `table`, then one bit per bone that the clip moves.
 @group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
-// Either priorities, four per vector, or per bone the accumulated motion (x) and its rise to the next row (y). In a clip's last
-// row, x is the motion over the whole clip, and y the bone's encoded error budget.
+// Rows of the gate's table. They hold priorities, four per vector; or per bone the accumulated motion (x) and its increase up
+// to the next row (y). In a clip's last row, x is the motion over the whole clip, and y the bone's encoded error budget.
 @group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
-// Per bone: the accumulated motion when it was last sampled.
+// Accumulated motion of each bone of each instance when the bone was last sampled.
 @group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
-// Remaining error budget of each bone that has children other than the next bone.
+// Remaining error budget of each bone that has other children than the next bone in the order.
 @group(0) @binding(6) var<storage, read_write> remaining: array<u32>;
-// One bit per slot of each instance, in three sections of the same layout: bones that are sampled, those of them that are
-// sampled ahead, and bones whose model matrices this frame updates.
+// One bit per slot of each instance, in three sections of the same layout: bones that are sampled, the subset that is sampled
+// ahead, and bones whose model matrices this frame updates.
 @group(0) @binding(7) var<storage, read_write> bits: array<u32>;
 
-// The factors of the hash below.
+// First factor of the hash `scramble`.
 const SCRAMBLE_FIRST: u32 = 0x21f0aaadu;
+// Second factor of the hash `scramble`.
 const SCRAMBLE_SECOND: u32 = 0x735a2d97u;
 
 // One round of a multiplicative hash (Wellons' "lowbias32").
@@ -61,14 +73,16 @@ fn scramble(word: u32) -> u32 {
     return mixed ^ (mixed >> 15u);
 }
 
-// A's rule: one update per period is skipped. If a period is no longer than a frame, that is every frame; otherwise each frame
-// in which the clock passes a multiple of the period.
+// A's rule: whether the update in this frame is skipped. One update per period is skipped. If a period is no longer than a
+// frame, every update is skipped. Otherwise, an update is skipped if the clock has passed a multiple of the period since the
+// last frame.
 fn is_skipped(period: u32, ticks: u32) -> bool {
     return period <= params.frame_ticks || ticks % period < params.frame_ticks;
 }
 
+// Mode SKIP_PERIOD: the bones among `candidates` that are sampled, one bit each. `first` is the slot of bit 0.
 fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, clip_clock: ClipClock) -> u32 {
-    // The offset keeps instances from skipping in step.
+    // An offset per instance keeps instances from skipping in step.
     let ticks = params.ticks + (scramble(instance) & 0xffffu);
     var chosen = candidates;
     var rest = candidates;
@@ -79,7 +93,7 @@ fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, clip_cloc
         let four = table[clip_clock.row * params.stride + slot / 4u];
         let two = select(four.x, four.y, (slot & 2u) != 0u);
         let priority = (two >> (16u * (slot & 1u))) & 0xffffu;
-        // The priority times Ω, in 1/65536, then the period for it.
+        // The priority times Ω, in 1/65536; then the period at that level.
         let level = (priority * omega) >> 16u;
         let whole = (params.period >> 16u) * level;
         let period = whole + (((params.period & 0xffffu) * level) >> 16u);
@@ -90,12 +104,14 @@ fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, clip_cloc
     return chosen;
 }
 
+// Mode UNIFORM: either all of `candidates` or none.
 fn all_or_none(instance: u32, candidates: u32, omega: u32) -> u32 {
     let frame = (params.frame + scramble(instance)) & 0xffffu;
     let is_due = (frame * omega) >> 16u != ((frame + 1u) * omega) >> 16u;
     return select(0u, candidates, is_due);
 }
 
+// Mode RANDOM: the bones among `candidates` that are sampled, one bit each. `first` is the slot of bit 0.
 fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
     var chosen = 0u;
     var rest = candidates;
@@ -110,41 +126,49 @@ fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
     return chosen;
 }
 
-// Exclusive upper bound of the allowed motion.
+// Exclusive upper bound of the allowed motion, in units of the table.
 const EVERYTHING: u32 = 1u << 30u;
 
-// Encoding of a bone's error budget. From this bit on: its fraction of the remaining budget, in 1/FRACTION_ONE.
+// First bit, in a bone's encoded error budget, of its fraction of the remaining budget. The fraction is in 1/FRACTION_ONE.
 const BUDGET_FRACTION_SHIFT: u32 = 8u;
-// Exponent bits of the quantization slack, which is added to missed motion: 2^(exponent − 1), or 0 for exponent 0.
+// Mask, in a bone's encoded error budget, of the exponent of the quantization slack. The slack, which is added to missed
+// motion, is 2^(exponent − 1), or 0 for exponent 0.
 const BUDGET_SLACK_MASK: u32 = 31u;
-// Flag: the bone above is not the previous one in the order.
+// Flag in a bone's encoded error budget: the bone above is not the previous one in the order.
 const STARTS: u32 = 32u;
-// Flag: the bone's remaining budget is stored for later bones.
+// Flag in a bone's encoded error budget: the remaining budget is stored for later bones.
 const REMAINING: u32 = 64u;
 
+// Quantization slack of a bone, from its encoded error budget, in units of the table.
 fn quantization_slack_of(granted: u32) -> u32 {
     return (1u << (granted & BUDGET_SLACK_MASK)) >> 1u;
 }
 
-// One bit per bone: the bones that are sampled, and those of them that are sampled ahead.
+// Decision of a gate for up to 32 bones, one bit per bone.
 struct Chosen {
+    // Bones that are sampled.
     bits: u32,
+    // Subset of `bits` that is sampled at the look-ahead time.
     ahead: u32,
 }
 
-// The motion state of one instance.
+// Allowed motion of one instance, and its position in the table.
 struct AccumulatedMotion {
+    // Motion that the instance's bones may miss in all, in units of the table.
     allowed: u32,
+    // Clip clock of the instance.
     clip_clock: ClipClock,
-    // The last row of the clip.
+    // Index of the clip's last row in the table.
     last_row: u32,
 }
 
-// Decides for bones in order, parents first. A bone that missed no more than its fraction of the remaining budget is not
-// sampled. It uses up what it missed and passes the rest to the bones below it. A bone that missed more is sampled and passes
-// on all of the remaining budget. It is sampled ahead if its motion until the look-ahead time is within its fraction too. It is
-// then off by that motion now, which it uses up, and can stay for twice as long. Bones in `asked` are always sampled; if
-// nothing may be missed, so are all bones. `left` is the budget that the previous bone left.
+// Mode BOUNDED: decides for bones in order, parents first. Each bone may miss a fraction of the remaining budget. A bone that
+// missed no more than that is not sampled; it uses up the motion that it missed and passes the rest of the budget to the bones
+// below. A bone that missed more is sampled and passes on all of the remaining budget.
+//
+// A bone is sampled ahead if its motion until the look-ahead time is within its fraction too. It is then off by that motion
+// now, which it uses up, and can stay for twice as long. Bones in `asked` are always sampled. If nothing may be missed, all
+// bones are sampled. `left` is the budget that the previous bone left.
 fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated: AccumulatedMotion, left: ptr<function, u32>) -> Chosen {
     let forced = asked | select(0u, candidates, accumulated.allowed == 0u);
     let row = accumulated.clip_clock.row * params.stride + first;
@@ -195,8 +219,8 @@ fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated
     return chosen;
 }
 
-// Decides for up to 32 bones of one instance. BOUNDED handles the words in order: `left` is the budget that the previous word
-// left.
+// Decides for up to 32 bones of one instance. BOUNDED handles the words of an instance in order: `left` is the budget that the
+// previous word left.
 fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: ptr<function, u32>) -> Chosen {
     let first = 32u * word;
     let reason = update_reason_of(clip_clock);
@@ -206,7 +230,7 @@ fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: pt
     let record = clip_clock.clip * (params.words + 1u);
     let all = 0xffffffffu >> (32u - min(params.bones - first, 32u));
     let candidates = select(animated_bones[record + 1u + word], all, reason == UPDATE_REASON_BLENDED);
-    // Sums of motion describe a single clip, so they cannot be used for other reasons to update.
+    // Accumulated motion describes a single clip, so it cannot decide for other update reasons.
     let forced = select(0u, all, reason >= UPDATE_REASON_FORCED);
     if MODE == BOUNDED {
         let accumulated = AccumulatedMotion(min(lod.allowed, EVERYTHING - 1u), clip_clock, animated_bones[record]);

@@ -1,35 +1,42 @@
-// The keyframe cursors of instances: for each instance and timeline of its clip, the key before the current time and the
-// fraction of the way to the next. A thread finds one cursor. With COMPACTED, only listed instances are handled, with all their
+// Keyframe cursors of instances: for each timeline of an instance's clip, the key before the current time and the fraction of
+// the interval to the next key. A thread finds one cursor. With COMPACTED, only listed instances are handled, with all their
 // layers. Cursors of the base layer at the look-ahead time are added.
 import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::keyframe_cursor;
 
+// Whether only listed instances are handled.
 override COMPACTED: bool = false;
 
+// Parameters of the kernel `animation/keyframe_cursor`.
 struct KeyframeCursorParams {
-    // Number of entries: layers times instances.
+    // Number of entries in `instances`: layers times instances.
     entries: u32,
     // Number of instances.
     instances: u32,
-    // Cursors allocated per instance.
+    // Number of cursors allocated per instance and layer.
     timelines: u32,
-    // Elapsed time in seconds, the same for all instances. At 0, the clip time of an instance is its `start`.
+    // Elapsed time in seconds, the same for all instances. At elapsed time 0, the clip time of an instance is its `start`.
     elapsed: f32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: KeyframeCursorParams;
+// Clip and playback of each instance, layer by layer.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
+// Location of each clip's data in the set.
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
+// Timelines of all clips.
 @group(0) @binding(3) var<storage, read> timelines: array<Timeline>;
-// After the cursors of all layers come those of the base layer at the look-ahead time. (Binding 4 has the key times: module
+// Out: the cursors of all layers, then the base layer's cursors at the look-ahead time. (Binding 4 has the key times: module
 // `animation`.)
 @group(0) @binding(5) var<storage, read_write> cursors: array<KeyframeCursor>;
+// Indices of the listed instances.
 @group(0) @binding(6) var<storage, read> updated_instances: array<u32>;
-// In the first vector, w is the number of listed instances.
+// Arguments of dispatches. In the first vector, w is the number of listed instances.
 @group(0) @binding(7) var<storage, read> dispatches: array<vec4<u32>>;
-// History of the gate's clip clocks, per instance: z is the time inside the base layer's clip, w the look-ahead time, both as
+// State of the gate's clip clocks, per instance: z is the time inside the base layer's clip, w the look-ahead time, both as
 // bits.
 @group(0) @binding(8) var<storage, read> history: array<vec4<u32>>;
 
@@ -39,7 +46,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     let at = index / params.timelines;
     var entry = at;
     if COMPACTED {
-        // In the order of instances and, within an instance, of layers. The base layer at the look-ahead time comes last.
+        // Threads are in the order of instances and, within an instance, of layers. The base layer at the look-ahead time comes
+        // last.
         let layers = params.entries / params.instances + 1u;
         let listed = at / layers;
         if listed >= dispatches[0].w {
@@ -61,7 +69,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     let timeline = timelines[clip.first_timeline + timeline_index];
     var time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * params.elapsed);
     if COMPACTED && (is_ahead || entry < params.instances) {
-        // The exact time that the gate used: both must agree on the keys that have passed.
+        // This is the exact time that the gate used, because both must agree on the keys that have passed.
         let seen = history[playing];
         if is_ahead && seen.w == seen.z {
             return;

@@ -1,42 +1,56 @@
 // Concatenates local transforms into model matrices. A thread walks one chain of one instance and keeps the parent's matrix in
-// registers. A dispatch handles the chains of one level of the hierarchy, after their parents. With COMPACTED, only listed
-// instances are walked, and of them only updated slots. All bones below an updated bone are updated too.
+// registers. A dispatch handles the chains of one level of the hierarchy, after their parents. With COMPACTED, only updated
+// slots of listed instances are walked. All bones below an updated bone are updated too.
 import package::wgsl::affine::product_row;
 import package::wgsl::animation::order::{CONTINUES, Chain, NO_PARENT, Slot};
 
+// Whether only updated slots of listed instances are walked.
 override COMPACTED: bool = false;
 
+// Parameters of the kernel `animation/local_to_model`.
 struct LocalToModelParams {
+    // Number of instances.
     instances: u32,
+    // Number of bones per instance.
     bones: u32,
-    // Words of updated bits per instance.
+    // Number of 32-bit words per instance in `updated_bones`.
     words: u32,
+    // Index in `chains` of this dispatch's first chain.
     first_chain: u32,
+    // Number of chains that this dispatch handles.
     chains: u32,
-    // The word at which the updated bits begin.
+    // Index of the word in `updated_bones` at which the updated bits begin.
     first_word: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: LocalToModelParams;
+// Bones in their order, parents first.
 @group(0) @binding(1) var<storage, read> slots: array<Slot>;
+// Chains of slots, level by level of the hierarchy.
 @group(0) @binding(2) var<storage, read> chains: array<Chain>;
-// From `first_word` on, one bit per slot of each instance.
+// Updated bones: from `first_word` on, one bit per slot of each instance.
 @group(0) @binding(3) var<storage, read> updated_bones: array<u32>;
+// Indices of the updated instances.
 @group(0) @binding(4) var<storage, read> updated_instances: array<u32>;
-// In the first vector, w is the number of updated instances.
+// Arguments of dispatches. In the first vector, w is the number of updated instances.
 @group(0) @binding(5) var<storage, read> dispatches: array<vec4<u32>>;
-// Translation and scale x; rotation; scale y and z.
+// Local transforms, three vectors per bone: translation and scale x; rotation; scale y and z.
 @group(0) @binding(6) var<storage, read> locals: array<vec4<f32>>;
-// Three rows per bone.
+// Out: model matrices, three rows per bone of each instance.
 @group(0) @binding(7) var<storage, read_write> model_matrices: array<vec4<f32>>;
 
+// The first three rows of a 4 × 4 affine matrix.
 struct Rows {
+    // Row for the x coordinate.
     x: vec4<f32>,
+    // Row for the y coordinate.
     y: vec4<f32>,
+    // Row for the z coordinate.
     z: vec4<f32>,
 }
 
-// Computes and stores the rows of a bone in the model's space, given those of its parent.
+// Computes and stores the model matrix of a bone, given its parent's matrix. `bone` is the index of the bone's first vector.
 fn joined(parent: Rows, bone: u32) -> Rows {
     let first = locals[bone];
     let q = locals[bone + 1u];
@@ -56,7 +70,7 @@ fn joined(parent: Rows, bone: u32) -> Rows {
     return rows;
 }
 
-// The stored rows of a bone, or the identity above the roots.
+// Stored model matrix of a bone; the identity if `bone` is NO_PARENT. `base` is the index of the instance's first bone.
 fn stored_rows(base: u32, bone: u32) -> Rows {
     if bone == NO_PARENT {
         return Rows(vec4<f32>(1.0, 0.0, 0.0, 0.0), vec4<f32>(0.0, 1.0, 0.0, 0.0), vec4<f32>(0.0, 0.0, 1.0, 0.0));
@@ -65,7 +79,7 @@ fn stored_rows(base: u32, bone: u32) -> Rows {
     return Rows(model_matrices[at], model_matrices[at + 1u], model_matrices[at + 2u]);
 }
 
-// The parent of the bone of a slot.
+// Parent of the bone in a slot, or NO_PARENT.
 fn bone_above(slot: u32) -> u32 {
     let parent = slots[slot].parent;
     if parent == CONTINUES {
@@ -74,7 +88,7 @@ fn bone_above(slot: u32) -> u32 {
     return parent;
 }
 
-// The first updated slot of an instance at or after `start`; at least `end` if there is none.
+// First updated slot of an instance at or after `start`. The result is at least `end` if there is none.
 fn next_updated(instance: u32, start: u32, end: u32) -> u32 {
     if start >= end {
         return end;
@@ -92,6 +106,7 @@ fn next_updated(instance: u32, start: u32, end: u32) -> u32 {
     return 32u * word + firstTrailingBit(bits);
 }
 
+// Computes the model matrices of a chain's bones, parents first.
 fn walk_chain(instance: u32, chain: Chain) {
     let base = instance * params.bones;
     let end = chain.first + chain.count;

@@ -1,57 +1,70 @@
 // Samples the local transforms of bones at the keyframe cursors of their instances (glTF 2.0, appendix C). A thread samples one
-// bone of one instance: every bone, or with COMPACTED the listed ones. With LAYERED, it blends the clips of further layers over
-// the base, by weight and mask.
+// bone of one instance: every bone, or with COMPACTED the listed bones. With LAYERED, a thread blends the clips of further
+// layers over the base layer, by weight and mask.
 import package::wgsl::animation::clip::{CONSTANT, KeyframeCursor, SetTrack, cursor_of_words, first_value_of, interpolation_of, timeline_of};
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::interpolation::{INTERPOLATION_LINEAR, INTERPOLATION_STEP};
 import package::wgsl::animation::rotation::{slerp, unit_quaternion};
 
+// Whether only the listed pairs of instance and bone are sampled.
 override COMPACTED: bool = false;
+// Whether the clips of further layers are blended over the base layer.
 override LAYERED: bool = false;
+// Whether rotations are interpolated linearly and then normalized, instead of spherically.
 override NLERP: bool = false;
-// Whether any track is a spline; without splines, lanes need not wait for the loads of that branch.
+// Whether any track is a spline. Without splines, threads need not wait for the loads of the spline branch.
 override SPLINES: bool = true;
 
+// Parameters of the kernel `animation/sample`.
 struct SampleParams {
+    // Number of bones per instance.
     bones: u32,
-    // Cursors allocated per instance.
+    // Number of cursors allocated per instance and layer.
     timelines: u32,
-    // Number of bones of all instances.
+    // Number of bones of all instances together.
     pairs: u32,
+    // Number of instances.
     instances: u32,
-    // Number of layers, the base included.
+    // Number of layers, the base layer included.
     layers: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: SampleParams;
-// Instances layer by layer; cursors have the same order.
+// Clip and playback of each instance, layer by layer. Cursors have the same order.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// Three tracks per bone and clip.
+// Three tracks per bone and clip: translation, rotation and scale.
 @group(0) @binding(2) var<storage, read> tracks: array<SetTrack>;
+// Values of the keys of all tracks.
 @group(0) @binding(3) var<storage, read> values: array<vec4<f32>>;
-// Cursor words (`cursor_of_words`), layer by layer. After all layers: those of the base layer at the look-ahead time.
+// Cursor words (`cursor_of_words`), layer by layer. After all layers: the base layer's cursors at the look-ahead time.
 @group(0) @binding(4) var<storage, read> cursors: array<vec2<u32>>;
-// Pairs to be sampled: instance * bones + bone. Pairs with PAIR_AHEAD are sampled at the look-ahead time.
+// Pairs of instance and bone to be sampled: instance * bones + bone. Pairs with PAIR_AHEAD are sampled at the look-ahead time.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
-// Workgroups of the dispatch, and the number of pairs.
+// Numbers of workgroups of the dispatch (xyz), and the number of pairs (w).
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
-// Translation and scale x; rotation; scale y and z.
+// Out: local transforms, three vectors per bone: translation and scale x; rotation; scale y and z.
 @group(0) @binding(7) var<storage, read_write> locals: array<vec4<f32>>;
-// For each layer above the base one weight per instance, then for each of these layers a mask with one value
-// per bone.
+// Weights of the layers above the base layer: one weight per instance, layer by layer. Then a mask for each of these layers,
+// with one value per bone.
 @group(0) @binding(8) var<storage, read> layer_weights: array<f32>;
 
-// Squared length below which a spline of rotations has no direction. It then keeps the value of the key before.
+// Squared length below which an interpolated spline of rotations has no direction. The rotation is then the value of the key
+// before.
 const VANISHING: f32 = 1e-12;
 
+// Position between two values of a track.
 struct Between {
-    // Index of the value, and the interpolation to the next: INTERPOLATION_STEP where nothing is interpolated.
+    // Index of the value before the position.
     value: u32,
+    // Interpolation to the next value; INTERPOLATION_STEP where nothing is interpolated.
     code: u32,
+    // Fraction of the interval to the next value, 0 to below 1.
     fraction: f32,
 }
 
+// Cursor of a track. `first_cursor` is the index of the first cursor of the track's instance.
 fn cursor_of(track: SetTrack, first_cursor: u32) -> KeyframeCursor {
     let timeline = timeline_of(track);
     if timeline == CONSTANT {
@@ -60,11 +73,12 @@ fn cursor_of(track: SetTrack, first_cursor: u32) -> KeyframeCursor {
     return cursor_of_words(cursors[first_cursor + timeline]);
 }
 
-// Whether two tracks have different timelines. Most tracks of a bone share one timeline, so that its cursor is loaded once.
+// Whether two tracks have different timelines. Most tracks of a bone share one timeline, so its cursor is loaded once.
 fn is_elsewhere(track: SetTrack, before: SetTrack) -> bool {
     return timeline_of(track) != timeline_of(before);
 }
 
+// Position of a cursor between two values of a track.
 fn between(track: SetTrack, cursor: KeyframeCursor) -> Between {
     if timeline_of(track) == CONSTANT {
         return Between(first_value_of(track), INTERPOLATION_STEP, 0.0);
@@ -78,6 +92,8 @@ fn between(track: SetTrack, cursor: KeyframeCursor) -> Between {
     return Between(first_value_of(track) + cursor.key, select(INTERPOLATION_STEP, code, fraction > 0.0), fraction);
 }
 
+// Value of a cubic Hermite spline at the fraction `t` of the interval. `value` is the index of the value before, which is
+// `start`.
 fn spline(start: vec4<f32>, value: u32, t: f32) -> vec4<f32> {
     let square = t * t;
     let cube = square * t;
@@ -88,6 +104,7 @@ fn spline(start: vec4<f32>, value: u32, t: f32) -> vec4<f32> {
         + (cube - square) * values[value + 2u];
 }
 
+// Translation or scale at a position between two values.
 fn vector(at: Between) -> vec3<f32> {
     let start = values[at.value];
     if at.code == INTERPOLATION_STEP {
@@ -99,6 +116,7 @@ fn vector(at: Between) -> vec3<f32> {
     return spline(start, at.value, at.fraction).xyz;
 }
 
+// Rotation at a position between two values, as a unit quaternion.
 fn rotation(at: Between, is_spline: bool) -> vec4<f32> {
     let start = values[at.value];
     if SPLINES && is_spline {
@@ -119,14 +137,18 @@ fn rotation(at: Between, is_spline: bool) -> vec4<f32> {
     return slerp(start, end, at.fraction);
 }
 
+// Local transform of a bone.
 struct Local {
+    // Translation.
     moved: vec3<f32>,
+    // Rotation, a unit quaternion.
     turned: vec4<f32>,
+    // Scale factors.
     scaled: vec3<f32>,
 }
 
-// `slot` is layer * instances + instance. `cursor_slot` is the same; for the base layer at the look-ahead time, it is layers *
-// instances + instance.
+// Local transform of a bone in the clip of one layer. `slot` is layer * instances + instance. `cursor_slot` equals `slot`; for
+// the base layer at the look-ahead time, it is layers * instances + instance.
 fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     let track = 3u * (instances[slot].clip * params.bones + bone);
     let first_cursor = cursor_slot * params.timelines;
@@ -146,7 +168,7 @@ fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     return Local(moved, turned, scaled);
 }
 
-// Blends two transforms; rotations along the chord to the nearer of q and -q.
+// Blends two transforms. Rotations are blended along the chord to the nearer one of q and -q.
 fn blend(below: Local, over: Local, weight: f32) -> Local {
     let rest = 1.0 - weight;
     let nearer = select(weight, -weight, dot(below.turned, over.turned) < 0.0);

@@ -1,11 +1,16 @@
-// Copies 16 bytes per thread: the cost of moving the same bytes, against which other kernels are measured.
+// Copies 16 bytes per thread. Its time is the cost of moving bytes, against which other kernels are measured.
 
+// Parameters of the kernel `baseline/copy`.
 struct CopyParams {
+    // Number of 16-byte vectors.
     vectors: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: CopyParams;
+// Vectors to copy.
 @group(0) @binding(1) var<storage, read> source: array<vec4<u32>>;
+// Out: the copied vectors.
 @group(0) @binding(2) var<storage, read_write> destination: array<vec4<u32>>;
 
 @compute @workgroup_size(64)

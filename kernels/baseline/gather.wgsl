@@ -1,28 +1,33 @@
-// Moves the bytes that sampling moves, without its arithmetic. For each bone, a thread reads the two keys around the current
-// cursor on three tracks. It writes the words of a local transform, each the exclusive or of two keys. Instances share tracks,
-// as they share those of a clip.
+// Moves the bytes that the sampling of animations moves, without its arithmetic. For each bone, a thread reads the two keys
+// around the current cursor on three tracks. The thread writes the words of a local transform, each the exclusive or of two
+// keys. Instances share tracks like instances that play the same clip.
 import package::wgsl::animation::clip::{SetTrack, first_value_of};
 import package::wgsl::animation::instance::AnimationInstance;
 
-// Whether tracks are looked up as sampling does, or are evenly spaced, so that only the keys are read.
+// Whether tracks are looked up in tables, as sampling does. If false, tracks are evenly spaced, so that only keys are read.
 override TABLES: bool = true;
 
+// Parameters of the kernel `baseline/gather`.
 struct GatherParams {
     // Number of bones of all instances together.
     pairs: u32,
+    // Number of bones per instance.
     bones: u32,
-    // Keys per track.
+    // Number of keys per track.
     keys: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: GatherParams;
+// Clip and playback of each instance.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// Three tracks per bone and clip.
+// Three tracks per bone and clip: translation, rotation and scale.
 @group(0) @binding(2) var<storage, read> tracks: array<SetTrack>;
-// The words of one cursor per instance: the key and, as bits, the fraction.
+// One cursor per instance, in two words: the key, and the fraction as bits.
 @group(0) @binding(3) var<storage, read> cursors: array<vec2<u32>>;
+// Values of the keys of all tracks.
 @group(0) @binding(4) var<storage, read> values: array<vec4<u32>>;
-// Three entries per pair of instance and bone.
+// Out: three vectors per pair of instance and bone.
 @group(0) @binding(5) var<storage, read_write> gathered: array<vec4<u32>>;
 
 @compute @workgroup_size(64)

@@ -1,12 +1,16 @@
-// Loads texels and adds them up: the cost of texel loads alone. Each thread walks along a row of the texture.
+// Loads texels and adds them up, to measure the cost of texel loads alone. Each thread walks along a row of the texture.
 struct LoadsParams {
-    // Threads along x and y, and texels that each thread loads.
+    // Number of threads along x and y.
     threads: vec2<u32>,
+    // Number of texels that each thread loads.
     loads: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: LoadsParams;
+// Texture to read; the red channel counts.
 @group(0) @binding(1) var texels: texture_2d<f32>;
+// Out: sum of each thread's texels, row by row.
 @group(0) @binding(2) var<storage, read_write> sums: array<f32>;
 
 @compute @workgroup_size(8, 8)

@@ -1,14 +1,19 @@
-// Draws the random words of terrain heights and stores them: the arithmetic that generation cannot avoid.
+// Draws the random words of terrain heights and stores them, to measure the arithmetic that generation cannot avoid.
 import package::wgsl::hash::threefry2x32;
 
+// Parameters of the kernel `baseline/words`.
 struct WordsParams {
+    // Key of the random words.
     key: vec2<u32>,
-    // Number of vectors of four words, and of vectors per row (one y).
+    // Number of vectors of four words.
     vectors: u32,
+    // Number of vectors per row (one y).
     vectors_per_row: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: WordsParams;
+// Out: random words, row by row.
 @group(0) @binding(1) var<storage, read_write> words: array<vec4<u32>>;
 
 @compute @workgroup_size(64)

@@ -1,80 +1,86 @@
 // Placements of meshes that are attached to bones, in one view. A thread multiplies the transform of a character, the model
-// matrix of the bone and the mesh's own offset. If no view of the frame sees the character, its bones are those of an earlier
-// frame: the mesh then becomes a point, which draws nothing. If the scene keeps its last frame, the thread also writes the
-// mesh's transform of that frame.
+// matrix of the bone and the mesh's own offset. If no view of the frame sees the character, its bones are outdated. The mesh
+// then becomes a point, which draws nothing. If the scene keeps its last frame, the thread also writes the mesh's transform of
+// that frame.
 import package::wgsl::affine::product_row;
 import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::view::SelectView;
 
+// Parameters of the kernel `lod/attach`.
 struct AttachParams {
     // Number of valid entries in `attachments`.
     attached: u32,
     // Number of bones of the character.
     bones: u32,
-    // The index in the scene of the character's first instance.
+    // Index in the scene of the character's first instance.
     first: u32,
-    // Index in `placements` of the last frame's first transform: the number of instances; 0 if the last frame is not kept.
+    // Index in `placements` of the last frame's first transform, equal to the number of instances; 0 if the last frame is not
+    // kept.
     first_last: u32,
-    // The number of the frame, from 1 on.
+    // Number of the frame, counted from 1.
     frame: u32,
-    // The number of the frame before; 0 if nothing is known of it.
+    // Number of the previous frame; 0 if its data is not known.
     last_frame: u32,
 }
 
-// `Attachment.mesh` of a free entry.
+// `Attachment.mesh` of an unused entry.
 const NO_MESH: u32 = 0xffffffffu;
 
 // A mesh that is attached to a bone.
 struct Attachment {
-    // The index in the scene of the mesh's instance.
+    // Index in the scene of the mesh's instance.
     mesh: u32,
-    // The instance of the character, counted from its first one.
+    // Index of the character's instance, counted from the character's first one.
     character: u32,
-    // The index of the bone.
+    // Index of the bone.
     bone: u32,
-    // Unique key: no other attachment has it, now or later.
+    // Key of the attachment. No other attachment has the same key, now or later.
     key: u32,
-    // The transform from the mesh's space to the bone's, three rows.
+    // Transform from the mesh's space to the bone's space, three rows.
     offset: array<vec4<f32>, 3>,
 }
 
-// Transform that a bone gave to a mesh in a frame.
+// Transform that a bone gave to an attached mesh in an earlier frame.
 struct KeptBone {
-    // The product of the bone's model matrix and the mesh's offset, three rows.
+    // Product of the bone's model matrix and the mesh's offset, three rows.
     rows: array<vec4<f32>, 3>,
-    // The number of the frame; 0 for none.
+    // Number of the frame in which the bone had this transform; 0 for none.
     frame: u32,
-    // The key of the attachment.
+    // Key of the attachment.
     key: u32,
-    // Explicit padding, not read.
+    // Padding, not read.
     unused_a: u32,
+    // Padding, not read.
     unused_b: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: AttachParams;
-// The view.
+// The view for which placements are written.
 @group(0) @binding(1) var<uniform> view: SelectView;
-// The attached meshes. Only the first `AttachParams::attached` entries are valid.
+// Attached meshes. Only the first `AttachParams::attached` entries are valid.
 @group(0) @binding(2) var<storage, read> attachments: array<Attachment>;
-// Three rows per bone of each instance of the character.
+// Model matrices: three rows per bone of each instance of the character.
 @group(0) @binding(3) var<storage, read> model_matrices: array<vec4<f32>>;
 // All instances of the scene.
 @group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
-// Per instance of the scene: the displacement that the frame's views allow; negative if no view sees it.
+// Per instance of the scene: the displacement that the frame's views allow; negative if no view sees the instance.
 // length: instances
 @group(0) @binding(5) var<storage, read> allowed: array<f32>;
 // Three rows per instance of the scene: the transform from model space to positions relative to the corner of the view's cell.
-// From `first_last` on: the same for the last frame, relative to the same cell. Out: the rows of attached meshes.
+// From `first_last` on: the last frame's transforms, relative to the same cell. Out: the rows of attached meshes.
 // length: placements
 @group(0) @binding(6) var<storage, read_write> placements: array<array<vec4<f32>, 3>>;
-// All instances of the scene as they were in the last frame; the same buffer as `instances` if it is not kept.
+// All instances of the scene in the state of the last frame. If the last frame is not kept, this is the same buffer as
+// `instances`.
 // length: instances
 @group(0) @binding(7) var<storage, read> last_instances: array<SceneInstance>;
-// Two per attachment, initially zero: the bone's transform in even frames and in odd frames.
+// Two entries per attachment, initially zero: the bone's transform in even frames and in odd frames.
 // length: 2 * attachments
 @group(0) @binding(8) var<storage, read_write> kept: array<KeptBone>;
 
-// Writes the product of an instance's placement and a transform in its space; a point if the instance is not visible.
+// Writes the product of an instance's placement and `local`, a transform in the instance's space, to `placements[to]`. If
+// `is_seen` is false, writes a point.
 fn write_placed(instance: SceneInstance, local: array<vec4<f32>, 3>, to: u32, is_seen: bool) {
     let axes = instance_axes(instance);
     let at = instance_position(instance, view.cell);
@@ -104,7 +110,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     if params.first_last == 0u {
         return;
     }
-    // All views of a frame write the same values, and read only entries that none of them writes.
+    // All views of a frame write the same values. They read only entries that no view of the frame writes.
     let last = kept[2u * index + ((params.frame + 1u) & 1u)];
     var last_local = local;
     if params.last_frame != 0u && last.frame == params.last_frame && last.key == attachment.key {

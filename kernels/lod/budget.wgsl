@@ -1,7 +1,7 @@
-// Finds by how much the levels of detail of a view are coarsened so that its triangles fit a budget (A section 6.3). Each coarser
-// level of an instance saves triangles from some factor of its metric on. A histogram has these savings over the logarithm of the
-// factor, rank by rank. It gives the bin of the least sufficient factor. A second histogram divides this bin into parts. Views
-// that share a budget add to the same histograms, stage by stage.
+// Finds how much the levels of detail of a view must be coarsened so that its triangles fit a budget (A section 6.3). Each
+// coarser level of an instance saves triangles once the factor of its metric is large enough. A histogram sums these savings
+// over the logarithm of the factor, rank by rank. It gives the bin of the smallest sufficient factor. A second histogram
+// divides this bin into parts. Views that share a budget add to the same histograms, stage by stage.
 import package::wgsl::lod::budget_state::BudgetState;
 import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, NO_RANK, OBJECT_LEVELS, RANKS, UNSEEN_METRIC, decision_level, decision_next, decision_steps, metric_bits};
 import package::wgsl::lod::transition::{held_level, is_faded_out, level_within, threshold_of, transition_decision};
@@ -10,110 +10,118 @@ import package::wgsl::lod::view::SelectView;
 // One of the constants below.
 override STAGE: u32 = 0u;
 
-// Stage: a thread per instance adds its triangles, and its savings to the bins.
+// Stage: a thread per instance adds the instance's triangles to their sum, and its savings to the bins.
 const BINS: u32 = 0u;
 // Stage: one workgroup finds the bin at which the triangles fit.
 const FIND_BIN: u32 = 1u;
-// Stage: a thread per instance adds its savings in that bin to the parts of the bin.
+// Stage: a thread per instance adds the instance's savings in that bin to the parts of the bin.
 const PARTS: u32 = 2u;
-// Stage: one workgroup finds the part, and writes the factors.
+// Stage: one workgroup finds the part at which the triangles fit, and writes the factors.
 const FIND_PART: u32 = 3u;
-// Stage: a thread per instance adds the triangles of both levels of its fade.
+// Stage: a thread per instance adds the triangles that the instance draws, both levels of a fade included.
 const FADES: u32 = 4u;
-// Stage: one thread ends the fades if they do not fit.
+// Stage: one thread ends all fades of the frame if their triangles do not fit.
 const FINISH: u32 = 5u;
 
-// Number of bins per rank, and of parts per bin.
+// Number of bins per rank.
 const RANK_BINS: u32 = 1024u;
+// Number of parts per bin.
 const BIN_PARTS: u32 = 1024u;
-// Number of bins.
+// Number of bins of all ranks.
 const ALL_BINS: u32 = 8192u;
-// Number of parts that a doubling of the factor takes.
+// Number of parts for a doubling of the factor.
 const OCTAVE: f32 = 65536.0;
-// Largest factor: 2 to the power of 16.
+// Largest factor of the metric: 2 to the power of 16.
 const MAX_FACTOR: f32 = 65536.0;
-// Safety margin for the rounding of `log2` and `exp2`, in parts.
+// Safety margin for the rounding of `log2` and `exp2`, in parts of a bin.
 const ROUNDED_PARTS: u32 = 2u;
-// Time constant of the pressure's exponential decay, in seconds.
+// Time constant with which the pressure falls exponentially, in seconds.
 const SETTLING: f32 = 0.15;
 
+// Parameters of the kernel `lod/budget`.
 struct BudgetParams {
-    // Largest number of triangles, in units.
+    // Largest number of triangles, in units of the budget.
     limit: u32,
     // Number of blocks of instances.
     blocks: u32,
 }
 
-// Sums over the instances of all views that share the budget. All are zero between frames.
+// Sums over the instances of all views that share the budget. The atomic sums are zero between frames.
 struct BudgetWork {
-    // `triangles`: their number without a budget. `fading`: their number with this frame's factors, both levels of each fade
-    // included.
+    // Number of triangles without a budget, in units of the budget.
     triangles: atomic<u32>,
+    // Number of triangles with this frame's factors, both levels of each fade included, in units of the budget.
     fading: atomic<u32>,
-    // `bin`: the bin of the least sufficient factor; 0xffffffff if the triangles fit without a budget, `ALL_BINS` if even the
-    // coarsest levels do not fit. `left`: the triangles that remain before the savings of this bin.
+    // Bin of the smallest sufficient factor. 0xffffffff if the triangles fit without a budget; `ALL_BINS` if even the coarsest
+    // levels do not fit.
     bin: u32,
+    // Number of triangles that remain before the savings of `bin` are subtracted.
     left: u32,
-    // Savings in triangles, per bin, and per part of `bin`.
+    // Savings in triangles per bin.
     bins: array<atomic<u32>, 8192>,
+    // Savings in triangles per part of `bin`.
     parts: array<atomic<u32>, 1024>,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: BudgetParams;
-// The view.
+// The view that shares the budget.
 @group(0) @binding(1) var<uniform> view: SelectView;
-// The objects.
+// The objects of the scene.
 // length: 1
 @group(0) @binding(2) var<storage, read> objects: array<LodObject>;
 // Object index of each block of instances; `NO_OBJECT` for none.
 @group(0) @binding(3) var<storage, read> block_objects: array<u32>;
-// The metric word of each instance.
+// Metric word of each instance in the view.
 // length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read> metrics: array<u32>;
-// Per instance: the decision of the last frame, if `SelectView::is_next` is 1.
+// Decision word of each instance in the last frame; valid if `SelectView::is_next` is 1.
 // length: BLOCK * blocks
 @group(0) @binding(5) var<storage, read> decisions: array<u32>;
-// In: the state of the last frame. Out: that of this frame.
+// State of the budget. In: the state of the last frame. Out: the state of this frame.
 // length: 1
 @group(0) @binding(6) var<storage, read_write> state: array<BudgetState>;
-// The sums.
+// Sums and histograms of the budget.
 // length: 1
 @group(0) @binding(7) var<storage, read_write> work: array<BudgetWork>;
 
-// Savings in triangles, per run of consecutive bins or parts.
+// Savings in triangles of each of 256 runs, which are ranges of consecutive bins or parts.
 var<workgroup> runs: array<u32, 256>;
-// The result of `find_run`.
+// Result of `find_run`: the index of the run, and the number of remaining triangles.
 var<workgroup> found: array<u32, 2>;
 
-// Number of triangles of a level.
+// Number of triangles of a level, in units of the budget.
 fn triangles_of(object: LodObject, level: u32) -> u32 {
     return object.triangles[level >> 2u][level & 3u];
 }
 
-// Index of a part of a rank. From this part on, `factor_at` is at least `factor`.
+// Index of the part of a rank from which on `factor_at` is at least `factor`.
 fn part_of(factor: f32) -> u32 {
     return u32(ceil(max(log2(factor), 0.0) * OCTAVE)) + ROUNDED_PARTS;
 }
 
-// The factor at a part of a rank.
+// Factor of the metric at a part of a rank, 1 to `MAX_FACTOR`.
 fn factor_at(part: u32) -> f32 {
     return min(exp2(f32(part) / OCTAVE), MAX_FACTOR);
 }
 
-// A visible instance, as its levels are chosen.
+// State of a visible instance for the choice of its level.
 struct Chosen {
+    // Object of the instance.
     object: LodObject,
-    // Its metric without a budget.
+    // Metric of the instance without a budget.
     metric: f32,
-    // The view's decision in the last frame, and the level that hysteresis holds.
+    // Decision word of the view in the last frame; 0 if there is none.
     last: u32,
+    // Level that hysteresis holds, or `NO_LEVEL`.
     held: u32,
-    // Its level without a budget.
+    // Level of the instance without a budget.
     level: u32,
-    // Whether it counts.
+    // Whether the instance counts: the view sees it, and it has not faded out.
     is_seen: bool,
 }
 
+// State of the instance at `index` for the choice of its level. The instance does not count if its block belongs to no object.
 fn chosen(index: u32) -> Chosen {
     var result: Chosen;
     if index / BLOCK >= params.blocks || block_objects[index / BLOCK] == NO_OBJECT {
@@ -129,7 +137,8 @@ fn chosen(index: u32) -> Chosen {
     return result;
 }
 
-// Adds the savings of an instance, level by level, to the bin or part of the factor at which it reaches the level.
+// Adds the savings of an instance's coarser levels. The savings of a level go to the bin or part of the factor at which the
+// instance reaches the level.
 fn add_savings(chosen: Chosen, stage: u32) {
     if !chosen.is_seen {
         return;
@@ -174,8 +183,8 @@ fn add_fades(chosen: Chosen, index: u32) {
     atomicAdd(&work[0].fading, drawn);
 }
 
-// Finds the first run whose savings, with those of all runs before it, bring `triangles` within the limit. Returns the index of
-// the run, 256 if there is none, and the triangles that remain before the savings of this run.
+// Finds the first run at which the savings of all runs up to it bring `triangles` within the limit. Returns the run's index,
+// 256 if there is none, and the triangles that remain before the run's savings are subtracted.
 fn find_run(lane: u32, triangles: u32) -> vec2<u32> {
     workgroupBarrier();
     if lane == 0u {
@@ -191,7 +200,7 @@ fn find_run(lane: u32, triangles: u32) -> vec2<u32> {
     return vec2<u32>(found[0], found[1]);
 }
 
-// Finds the bin whose savings bring the triangles within the limit, and clears the bins.
+// Finds the bin at whose savings the triangles come within the limit, and clears the bins.
 fn find_bin(lane: u32) {
     let length = ALL_BINS / 256u;
     var saved = 0u;
@@ -207,7 +216,7 @@ fn find_bin(lane: u32) {
             left -= min(atomicLoad(&work[0].bins[bin]), left);
             bin++;
         }
-        // Nothing is to be saved: no bin.
+        // No bin is needed if the triangles fit without savings.
         work[0].bin = select(bin, 0xffffffffu, left <= params.limit && bin == 0u);
         work[0].left = left;
     }
@@ -217,7 +226,7 @@ fn find_bin(lane: u32) {
     }
 }
 
-// Finds the part of the bin, writes the state, and clears the parts.
+// Finds the part of the bin at which the triangles fit, writes the state, and clears the parts.
 fn find_part(lane: u32) {
     let length = BIN_PARTS / 256u;
     var saved = 0u;
@@ -235,7 +244,7 @@ fn find_part(lane: u32) {
         }
         let is_needed = work[0].bin != 0xffffffffu;
         let is_missed = is_needed && work[0].bin >= ALL_BINS;
-        // The savings of a part begin with it.
+        // The savings of a part hold from the start of the part on.
         let needed = select(0u, BIN_PARTS * min(work[0].bin, ALL_BINS - 1u) + max(part, 1u) - 1u, is_needed);
         write_state(select(needed, BIN_PARTS * ALL_BINS - 1u, is_missed), is_missed);
     }
@@ -245,14 +254,15 @@ fn find_part(lane: u32) {
     }
 }
 
-// Writes the factors. The pressure rises to `needed` at once, and falls to it with the time constant `SETTLING`.
+// Writes the factors of all ranks. The pressure rises to `needed` at once, and falls towards it with the time constant
+// `SETTLING`.
 fn write_state(needed: u32, is_missed: bool) {
     let last = select(needed, state[0].pressure, view.is_next != 0u);
     let ahead = f32(last - min(needed, last)) * exp(-view.seconds / SETTLING);
     let pressure = min(needed + u32(ahead), BIN_PARTS * ALL_BINS - 1u);
     let size = RANK_BINS * BIN_PARTS;
     for (var rank = 0u; rank < 12u; rank++) {
-        // Ranks below that of the pressure are as coarse as they can be, and those above it are spared.
+        // Ranks below the pressure's rank are at their coarsest. Ranks above it are not coarsened.
         let begin = min(rank, RANKS) * size;
         let part = min(pressure - min(begin, pressure), size - 1u);
         state[0].factors[rank >> 2u][rank & 3u] = select(factor_at(part), 1.0, rank >= NO_RANK);

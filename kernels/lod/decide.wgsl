@@ -5,36 +5,37 @@ import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, R
 import package::wgsl::lod::transition::{NO_LIST, decision_finest, transition_decision, transition_entries};
 import package::wgsl::lod::view::SelectView;
 
-// `finest` of an instance that no view of the frame has seen.
+// Value of `finest` for an instance that no view of the frame has seen.
 const UNSEEN_LEVEL = 0xffffffffu;
 
-// The view. Its `blocks` may be fewer than `block_objects` has.
+// The view. `SelectView::blocks` may be less than the length of `block_objects`.
 @group(0) @binding(0) var<uniform> view: SelectView;
-// The objects.
+// The objects of the scene.
 // length: 1
 @group(0) @binding(1) var<storage, read> objects: array<LodObject>;
 // Object index of each block of instances. The instances of a block with `NO_OBJECT` are left unchanged.
 @group(0) @binding(2) var<storage, read> block_objects: array<u32>;
-// The metric word of each instance.
+// Metric word of each instance in the view.
 // length: BLOCK * blocks
 @group(0) @binding(3) var<storage, read> metrics: array<u32>;
-// Out, per instance: the decision word; 0 if the view does not see it. In: the decisions of the last frame, if
-// `SelectView::is_next` is 1.
+// Decision word of each instance. In: the decisions of the last frame, if `SelectView::is_next` is 1. Out: the decisions of
+// this frame; 0 if the view does not see the instance.
 // length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read_write> decisions: array<u32>;
-// Out, per instance: the decision of the last frame; 0 if the view was not in it.
+// Out, per instance: the decision word of the last frame; 0 if the view was not in that frame.
 // length: BLOCK * blocks
 @group(0) @binding(5) var<storage, read_write> last_decisions: array<u32>;
-// Out, per block: the number of its instances in each of `OBJECT_LISTS` lists.
+// Out, per block: the number of the block's instances in each of `OBJECT_LISTS` lists.
 // length: OBJECT_LISTS * blocks
 @group(0) @binding(6) var<storage, read_write> counts: array<u32>;
-// Out, per instance: the finest level that the frame's views draw; `UNSEEN_LEVEL` if none sees it.
+// Out, per instance: the finest level that the frame's views draw; `UNSEEN_LEVEL` if no view sees the instance.
 // length: BLOCK * blocks
 @group(0) @binding(7) var<storage, read_write> finest: array<u32>;
-// The factors by which the view's budget coarsens levels.
+// State of the view's triangle budget, with the factors that coarsen levels.
 // length: 1
 @group(0) @binding(8) var<storage, read> budget: array<BudgetState>;
 
+// Number of the block's instances in each list.
 var<workgroup> tally: array<atomic<u32>, 32>;
 
 @compute @workgroup_size(64)

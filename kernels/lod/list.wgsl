@@ -1,22 +1,23 @@
 // Lists of the instances that a view sees, per level of detail and orientation (mirrored or not), in ascending order. In the
 // first stage, a workgroup per object computes prefix sums of its blocks' counts, and the instance counts of its draws. In the
-// second stage, a thread per instance writes its list entry.
+// second stage, a thread per instance writes the instance's list entry.
 import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, SceneDraw};
 import package::wgsl::lod::transition::{NO_LIST, transition_entries};
 
 // One of the constants below.
 override STAGE: u32 = 0u;
 
-// Stage: a workgroup per object computes prefix sums.
+// Stage: a workgroup per object computes prefix sums of the counts of its blocks.
 const SUM: u32 = 0u;
 // Stage: a thread per instance writes list entries. The threads of a block synchronize at barriers.
 const PLACE: u32 = 1u;
 
-// Runs of an object's blocks that are summed in parallel, with one thread per run and list.
+// Number of runs into which an object's blocks are divided. They are summed in parallel, with one thread per run and list.
 const RUNS: u32 = 8u;
 // Number of blocks per workgroup in the stage `PLACE`.
 const PLACED_BLOCKS: u32 = 4u;
 
+// Parameters of the kernel `lod/list`.
 struct ListParams {
     // Number of objects.
     objects: u32,
@@ -24,25 +25,27 @@ struct ListParams {
     blocks: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: ListParams;
+// The objects of the scene.
 @group(0) @binding(1) var<storage, read> objects: array<LodObject>;
 // Object index of each block of instances; `NO_OBJECT` for none.
 @group(0) @binding(2) var<storage, read> block_objects: array<u32>;
-// The decision word of each instance of the blocks.
+// Decision word of each instance.
 @group(0) @binding(3) var<storage, read> decisions: array<u32>;
-// Per block and list. In: the number of instances. Out: the number of instances in the blocks before it.
+// Counts per block and list. In: the number of instances. Out: the number of instances in the object's preceding blocks.
 @group(0) @binding(4) var<storage, read_write> counts: array<u32>;
-// The lists of all objects: list entries.
+// Out: list entries of all objects.
 @group(0) @binding(5) var<storage, read_write> lists: array<u32>;
-// `OBJECT_LISTS` draws per part of each object.
+// Arguments of draws: `OBJECT_LISTS` draws per part of each object. Out: their instance counts.
 @group(0) @binding(6) var<storage, read_write> arguments: array<SceneDraw>;
 
-// The sum per run and list.
+// Number of instances per run and list.
 var<workgroup> sums: array<u32, 256>;
-// Per block and list: one bit per instance of the block, in two words.
+// Members of each list, per block and list: one bit per instance of the block, in two words.
 var<workgroup> members: array<atomic<u32>, 256>;
 
-// Computes the prefix sums of an object's blocks, and the instance counts of its draws.
+// Computes the prefix sums of an object's blocks, and the instance counts of the object's draws.
 fn sum(object: LodObject, lane: u32) {
     let list = lane % OBJECT_LISTS;
     let run = lane / OBJECT_LISTS;
@@ -74,14 +77,14 @@ fn sum(object: LodObject, lane: u32) {
     }
 }
 
-// Marks an instance of a block as a member of a list.
+// Marks an instance of a block as a member of a list. `lane` is the thread's index in the workgroup.
 fn mark(list: u32, lane: u32) {
     if list != NO_LIST {
         atomicOr(&members[2u * (OBJECT_LISTS * (lane / BLOCK) + list) + lane % BLOCK / 32u], 1u << (lane % 32u));
     }
 }
 
-// Writes an instance's entry into a list.
+// Writes an instance's entry into a list, in the order of instances.
 fn write_entry(object: LodObject, block: u32, lane: u32, list: u32, entry: u32) {
     if list == NO_LIST {
         return;

@@ -1,4 +1,4 @@
-// Finds the instances of a scene that a view sees: their metric, placement and allowed displacement. A thread handles one
+// Finds the instances of a scene that a view sees, with their metric, placement and allowed displacement. A thread handles one
 // instance. `lod/decide` then chooses their levels of detail.
 import package::wgsl::lod::allowed::{MAX_ALLOWED, allowed_in_model, camera_allows};
 import package::wgsl::lod::criterion::{MAX_METRIC, Placed, criterion_metric};
@@ -8,12 +8,12 @@ import package::wgsl::lod::view::{POSITION_SLACK, SelectView, VIEW_CAMERAS};
 
 // Allowed displacement of an instance that no view of the frame has seen.
 const UNSEEN_ALLOWED: f32 = -1.0;
-// Largest motion that counts, in picture heights per second.
+// Largest speed in the picture that counts, in picture heights per second.
 const MAX_MOTION: f32 = 4.0;
 
-// The view. Its `blocks` may be fewer than `block_objects` has.
+// The view. `SelectView::blocks` may be less than the length of `block_objects`.
 @group(0) @binding(0) var<uniform> view: SelectView;
-// The objects.
+// The objects of the scene.
 // length: 1
 @group(0) @binding(1) var<storage, read> objects: array<LodObject>;
 // Object index of each block of instances. The instances of a block with `NO_OBJECT` are left unchanged.
@@ -21,29 +21,29 @@ const MAX_MOTION: f32 = 4.0;
 // The instances of all blocks.
 // length: BLOCK * blocks
 @group(0) @binding(3) var<storage, read> instances: array<SceneInstance>;
-// Out, per instance: the smallest displacement, in model units, that is allowed by the frame's views that see it;
-// `UNSEEN_ALLOWED` if none sees it.
+// Out, per instance: the smallest displacement, in model units, that any view of the frame allows which sees the instance.
+// `UNSEEN_ALLOWED` if no view sees the instance.
 // length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
-// Out, per instance: its metric word; `UNSEEN_METRIC` if the view does not see it.
+// Out, per instance: the metric word; `UNSEEN_METRIC` if the view does not see the instance.
 // length: BLOCK * blocks
 @group(0) @binding(5) var<storage, read_write> metrics: array<u32>;
-// Out, per visible instance: three rows of the transform from model space to positions relative to the corner of the view's
-// cell. In: those of the last frame, if `SelectView::is_next` is 1.
+// Three rows per visible instance: the transform from model space to positions relative to the corner of the view's cell. In:
+// the rows of the last frame, if `SelectView::is_next` is 1. Out: the rows of this frame.
 // length: BLOCK * blocks
 @group(0) @binding(6) var<storage, read_write> placements: array<array<vec4<f32>, 3>>;
-// Per instance: the decision of the last frame, if `SelectView::is_next` is 1.
+// Decision word of each instance in the last frame; valid if `SelectView::is_next` is 1.
 // length: BLOCK * blocks
 @group(0) @binding(7) var<storage, read> decisions: array<u32>;
 
-// Whether the view may see the instance at all, regardless of its position.
+// Whether the view may see the instance at all, wherever it is.
 fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
     let is_alive = object_flags_shown(object.flags) != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
     let casts = view.casters == 0u || (instance.flags & INSTANCE_CASTS) != 0u;
     return is_alive && casts && (instance_flags_mask(instance.flags) & view.mask) != 0u;
 }
 
-// Whether a sphere reaches into the view volume.
+// Whether a sphere reaches into the view volume. The center is relative to the corner of the view's cell.
 fn is_inside(center: vec3<f32>, radius: f32) -> bool {
     let lengths = length(center) + radius;
     var least = MAX_ALLOWED;
@@ -54,16 +54,16 @@ fn is_inside(center: vec3<f32>, radius: f32) -> bool {
     return least >= 0.0;
 }
 
-// Position of a point in the picture, from the middle, in units of half the picture's height; far outside for a point behind
-// the eye.
+// Position of a point in the picture, relative to its middle, in units of half the picture's height. A point behind the eye
+// gets a position far outside.
 fn in_picture(rows: array<vec4<f32>, 3>, point: vec3<f32>) -> vec2<f32> {
     let at = vec4<f32>(point, 1.0);
     let w = dot(rows[2], at);
     return select(vec2<f32>(1e4), vec2<f32>(dot(rows[0], at), dot(rows[1], at)) / w, w > 0.0);
 }
 
-// Factor of the metric for what is perceived poorly (A section 6.4): an instance that crosses the picture, and one away from its
-// middle.
+// Factor of the metric for instances that are perceived poorly (A section 6.4): instances that cross the picture, and instances
+// away from its middle.
 fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
     if object.motion == 0.0 && object.periphery == 0.0 {
         return 1.0;
@@ -75,22 +75,22 @@ fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
         let last = placements[index];
         let point = vec4<f32>(sphere.xyz, 1.0);
         let last_center = vec3<f32>(dot(last[0], point), dot(last[1], point), dot(last[2], point));
-        // In heights of the picture.
+        // Speed in picture heights per second.
         speed = 0.5 * distance(now, in_picture(view.last_clip_rows, last_center)) / view.seconds;
     }
     return 1.0 + object.motion * min(speed, MAX_MOTION) + object.periphery * min(length(now), 1.0);
 }
 
-// A view's result for a visible sphere.
+// Result of a view's cameras for a visible instance.
 struct Seen {
-    // Smallest displacement that the view's cameras allow, in model units.
+    // Smallest displacement that any of the view's cameras allows, in model units.
     allowed: f32,
-    // Smallest metric of the view's cameras. It decides the level.
+    // Smallest metric in any of the view's cameras, which decides the level.
     metric: f32,
 }
 
-// Driver workaround: where uniforms alone decide loops and branches, lavapipe compiles the kernel again in each submission. The
-// loop therefore also depends on `seen`.
+// Result of the view's cameras for a visible instance. Driver workaround: where uniforms alone decide loops and branches,
+// lavapipe compiles the kernel again in each submission. The loop therefore also depends on `seen`.
 fn seen_by(object: LodObject, placed: Placed, scale: f32) -> Seen {
     let cameras = min(view.camera_count, VIEW_CAMERAS);
     var seen = Seen(MAX_ALLOWED, MAX_METRIC);
@@ -103,7 +103,7 @@ fn seen_by(object: LodObject, placed: Placed, scale: f32) -> Seen {
     return seen;
 }
 
-// The metric word of an instance. Writes its placement and its allowed displacement.
+// Metric word of an instance in the view. Also writes the instance's placement and its allowed displacement.
 fn metric_of(index: u32, object: LodObject) -> u32 {
     let instance = instances[index];
     let before = select(allowed[index], UNSEEN_ALLOWED, view.is_first != 0u);
@@ -113,7 +113,7 @@ fn metric_of(index: u32, object: LodObject) -> u32 {
         let sphere = instance.bounding_sphere;
         let center = axes.x * sphere.x + axes.y * sphere.y + axes.z * sphere.z + at;
         let scale = max(max(abs(instance.scale.x), abs(instance.scale.y)), abs(instance.scale.z));
-        // Grows by the rounding error of the center, so that the sphere still contains the instance.
+        // The radius grows by the rounding error of the center, so that the sphere still contains the instance.
         let radius = sphere.w * scale + POSITION_SLACK * (length(at) + scale * length(sphere.xyz));
         if object_flags_never_culled(object.flags) != 0u || is_inside(center, radius) {
             let seen = seen_by(object, Placed(axes, at, center, radius), scale);

@@ -1,32 +1,34 @@
-// Sorted draws, of objects that are drawn instance by instance. A thread writes the draw of one part of one instance, and the
-// draw's list. The level of detail is the one at which the view sees the instance.
+// Sorted draws, for objects that are drawn instance by instance. A thread writes the draw of one part of one instance, and the
+// draw's list entry. The level of detail is the level at which the view sees the instance.
 import package::wgsl::lod::object::{LodObject, SceneDraw};
 import package::wgsl::lod::transition::sorted_entry;
 
-// A part of an instance.
+// A draw of one part of one instance.
 struct SortedDraw {
-    // The index of the instance.
+    // Index of the instance in the scene.
     instance: u32,
-    // The index of the part's first draw.
+    // Index in `arguments` of the part's first draw.
     first_draw: u32,
-    // The index of the instance in its object.
+    // Index of the instance in its object.
     slot: u32,
-    // The index of the object.
+    // Index of the object.
     object: u32,
 }
 
+// Parameters of the kernel `lod/sorted`.
 struct SortedParams {
-    // Number of draws.
+    // Number of sorted draws.
     count: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: SortedParams;
-// The parts to draw. Their instances, draws and objects must lie inside `decisions`, `arguments` and `objects`.
+// The parts to draw. Their instances, first draws and objects must be valid indices of `decisions`, `arguments` and `objects`.
 // length: sorted
 @group(0) @binding(1) var<storage, read> sorted: array<SortedDraw>;
-// The decision word of each instance of the scene.
+// Decision word of each instance of the scene.
 @group(0) @binding(2) var<storage, read> decisions: array<u32>;
-// Per part of each object: one draw per list.
+// Arguments of draws: one draw per list, for each part of each object.
 @group(0) @binding(3) var<storage, read> arguments: array<SceneDraw>;
 // Out: one draw per entry of `sorted`.
 // length: sorted
@@ -34,7 +36,7 @@ struct SortedParams {
 // Out: the single list entry of each draw.
 // length: sorted
 @group(0) @binding(5) var<storage, read_write> entries: array<u32>;
-// The objects.
+// The objects of the scene.
 // length: 1
 @group(0) @binding(6) var<storage, read> objects: array<LodObject>;
 

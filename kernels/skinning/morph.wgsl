@@ -1,45 +1,50 @@
 // Morph targets: adds the weighted deltas of the targets to vertices, before skinning. A workgroup morphs one listed cluster of
-// one instance, if the instance is visible at a level of detail with this cluster.
+// one instance. Clusters of invisible instances, and clusters beyond an instance's level of detail, are skipped.
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::instance_lod::MAX_LEVELS;
 import package::wgsl::skinning::page::NO_PAGE;
 
-// Whether the output lies in pages. Clusters without a page are skipped.
+// Whether the output lies in pages. If so, clusters without a page are skipped.
 override PAGED: bool = false;
 
-// Words of an `InstanceLod`.
+// Number of words of an `InstanceLod`.
 const LOD_WORDS: u32 = 3u;
 
+// Parameters of the kernel `skinning/morph`.
 struct MorphParams {
+    // Number of vertices of the mesh.
     vertices: u32,
+    // Number of morph targets.
     targets: u32,
+    // Number of instances.
     instances: u32,
     // Number of clusters times number of instances.
     pairs: u32,
-    // Number of clusters at each level of detail.
+    // Number of clusters of the mesh at each level of detail.
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: MorphParams;
-// Five pairs per vertex.
+// Vertices of the mesh, five pairs of floats each.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
-// Index of each vertex's first delta; one more entry than there are vertices.
+// Index of each vertex's first delta, and at the end the number of deltas.
 @group(0) @binding(2) var<storage, read> offsets: array<u32>;
-// Three vectors per delta: position and, as bits, the target; normal; tangent.
+// Three vectors per delta: position (xyz) with the target as bits (w); normal; tangent.
 @group(0) @binding(3) var<storage, read> deltas: array<vec4<f32>>;
-// The weights of each instance's targets.
+// Weights of the targets, instance by instance.
 @group(0) @binding(4) var<storage, read> weights: array<f32>;
-// Selects the clusters that are morphed: the words of the `InstanceLod` of each instance, or with PAGED the page of each
-// cluster of each instance.
+// Selection of the clusters to morph. With PAGED, it is the page of each cluster of each instance; otherwise, the words of each
+// instance's `InstanceLod`.
 @group(0) @binding(5) var<storage, read> seen: array<u32>;
-// Pairs to be skinned: cluster * instances + instance.
+// Pairs of cluster and instance to be skinned: cluster * instances + instance.
 @group(0) @binding(6) var<storage, read> pairs: array<u32>;
-// Workgroups of the dispatch, and the number of pairs.
+// Numbers of workgroups of the dispatch (xyz), and the number of pairs (w).
 @group(0) @binding(7) var<storage, read> dispatched: vec4<u32>;
-// Morphed vertices in the layout of `vertices`, instance by instance or page by page.
+// Out: morphed vertices in the layout of `vertices`, instance by instance or page by page.
 @group(0) @binding(8) var<storage, read_write> morphed: array<vec2<f32>>;
 
-// Whether an instance is visible, at a level of detail with this cluster.
+// Whether an instance is visible at a level of detail that contains this cluster.
 fn is_seen(instance: u32, cluster: u32) -> bool {
     let lod = LOD_WORDS * instance;
     let level = min(seen[lod + 2u], MAX_LEVELS - 1u);

@@ -1,6 +1,5 @@
 // Weights of morph targets at each instance's time in its clip (glTF 2.0, section 3.11). The kernel runs before
-// skinning/select. A thread computes the weight of one target of one instance. Instances that are not visible keep their
-// weights.
+// skinning/select. A thread computes the weight of one target of one instance. Invisible instances keep their weights.
 import package::wgsl::animation::clip::Timeline;
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
@@ -8,40 +7,47 @@ import package::wgsl::animation::interpolation::{INTERPOLATION_LINEAR, INTERPOLA
 import package::wgsl::animation::timeline::{keyframe_cursor, times};
 import package::wgsl::skinning::instance_lod::InstanceLod;
 
+// Parameters of the kernel `skinning/morph_weights`.
 struct MorphWeightsParams {
+    // Number of morph targets.
     targets: u32,
-    // Number of targets of all instances together.
+    // Number of targets times number of instances.
     pairs: u32,
-    // Elapsed time in seconds, the same for all instances. At 0, the clip time of an instance is its `start`.
+    // Elapsed time in seconds, the same for all instances. At elapsed time 0, the clip time of an instance is its `start`.
     elapsed: f32,
 }
 
-// The keys of a clip in a set.
+// Location of a clip's morph weights in a set of clips.
 struct WeightEntry {
     // The clip's duration in seconds.
     duration: f32,
-    // Index of its first key time.
+    // Index of the clip's first key time.
     first_time: u32,
     // Number of keys, at least 1.
     keys: u32,
-    // Index of its first value.
+    // Index of the clip's first value.
     first_value: u32,
-    // INTERPOLATION_STEP, INTERPOLATION_LINEAR, or INTERPOLATION_SPLINE, which has in-tangents, values and out-tangents.
+    // INTERPOLATION_STEP, INTERPOLATION_LINEAR or INTERPOLATION_SPLINE. A spline key has in-tangents, values and out-tangents.
     interpolation: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: MorphWeightsParams;
+// Clip and playback of each instance.
 @group(0) @binding(1) var<storage, read> instances: array<AnimationInstance>;
-// Keys of each clip.
+// Location of each clip's morph weights.
 @group(0) @binding(2) var<storage, read> entries: array<WeightEntry>;
-// Level of detail of each instance.
+// Level of detail of each instance, which tells whether the instance is visible.
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
-// Binding 4 holds the key times. Values lie key by key, one per target.
+// Binding 4 holds the key times.
+// Values of the keys of all clips, key by key, one value per target.
 @group(0) @binding(5) var<storage, read> values: array<f32>;
+// Out: weights of the targets, instance by instance.
 @group(0) @binding(6) var<storage, read_write> weights: array<f32>;
 
+// Value of a cubic Hermite spline at the fraction `t` of the interval from a key to the next, which takes `seconds`.
 fn spline(first: u32, key: u32, t: f32, seconds: f32) -> f32 {
-    // The in-tangents, values and out-tangents of a key, followed by those of the next.
+    // Each key has in-tangents, values and out-tangents, in this order. The next key's follow.
     let at = first + 3u * key * params.targets;
     let start = values[at + params.targets];
     let leaving = values[at + 2u * params.targets];
@@ -70,7 +76,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     let found = keyframe_cursor(Timeline(entry.first_time, entry.keys), time);
     let t = found.fraction;
     let first = entry.first_value + pair - index * params.targets;
-    // At the last key the fraction is 0.
+    // The fraction is 0 at the last key.
     let is_between = t > 0.0;
     var weight = 0.0;
     if entry.interpolation == INTERPOLATION_SPLINE {

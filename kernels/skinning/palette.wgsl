@@ -1,11 +1,13 @@
-// Palettes: for each instance and bone of a skin, the matrix from bind space to model space. With DUAL, it is decomposed into a
-// stretch followed by a rigid motion. A thread computes one bone; instances that are not visible are skipped.
+// Palettes: for each instance and bone of a skin, the matrix from bind space to model space. With DUAL, the matrix is
+// decomposed into a stretch followed by a rigid motion. A thread computes one bone. Invisible instances are skipped.
 import package::wgsl::skinning::instance_lod::InstanceLod;
 import package::wgsl::affine::product_row;
 import package::wgsl::skinning::rows::{LEAST_LENGTH, unit_or};
 
+// Whether palettes hold dual quaternions and stretches instead of matrices.
 override DUAL: bool = false;
 
+// Parameters of the kernel `skinning/palette`.
 struct PaletteParams {
     // Number of bones of the skin.
     bones: u32,
@@ -15,26 +17,28 @@ struct PaletteParams {
     pairs: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: PaletteParams;
-// Indices of the skin's bones.
+// Indices in the skeleton of the skin's bones.
 @group(0) @binding(1) var<storage, read> bones: array<u32>;
-// Three rows per bone of the skin.
+// Inverse bind matrices: three rows per bone of the skin.
 @group(0) @binding(2) var<storage, read> inverse_binds: array<vec4<f32>>;
-// Three rows per bone of the skeleton and instance.
+// Model matrices: three rows per bone of the skeleton and instance.
 @group(0) @binding(3) var<storage, read> model_matrices: array<vec4<f32>>;
 // Level of detail of each instance.
 @group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
-// Three rows per bone; with DUAL the rotation, the dual part, the diagonal, and the elements above it.
+// Out: three rows per bone of the skin and instance. With DUAL, four vectors: the rotation, the dual part, and the stretch's
+// diagonal and elements above the diagonal.
 @group(0) @binding(5) var<storage, read_write> palette: array<vec4<f32>>;
 
-// A unit vector perpendicular to a unit vector (Duff et al. 2017).
+// A unit vector perpendicular to the unit vector `v` (Duff et al. 2017).
 fn upright(v: vec3<f32>) -> vec3<f32> {
     let side = select(1.0, -1.0, v.z < 0.0);
     let a = -1.0 / (side + v.z);
     return vec3<f32>(1.0 + side * v.x * v.x * a, side * v.x * v.y * a, -side * v.x);
 }
 
-// The quaternion, of either sign, of a rotation given by its columns.
+// Unit quaternion of a rotation that is given by its columns. The sign of the quaternion is arbitrary.
 fn quaternion(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> vec4<f32> {
     let squares = vec4<f32>(
         1.0 + x.x - y.y - z.z, 1.0 - x.x + y.y - z.z, 1.0 - x.x - y.y + z.z, 1.0 + x.x + y.y + z.z);
@@ -55,12 +59,13 @@ fn quaternion(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> vec4<f32> {
     return q * inverseSqrt(dot(q, q));
 }
 
+// Decomposes a matrix into a stretch and a rigid motion, and stores it as four vectors from `at` on.
 fn write_dual(at: u32, rows: array<vec4<f32>, 3>) {
     let a = vec3<f32>(rows[0].x, rows[1].x, rows[2].x);
     let b = vec3<f32>(rows[0].y, rows[1].y, rows[2].y);
     let c = vec3<f32>(rows[0].z, rows[1].z, rows[2].z);
     let t = vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
-    // A column without direction is replaced by one that leaves the others unchanged.
+    // A column without direction is replaced by a direction that leaves the other columns unchanged.
     let x = unit_or(a, vec3<f32>(1.0, 0.0, 0.0));
     let along = dot(x, b);
     let y = unit_or(b - along * x, upright(x));

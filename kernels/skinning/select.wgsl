@@ -1,68 +1,84 @@
-// Selects the clusters to be skinned, among clusters of visible instances at their level of detail. A cluster is selected if
-// one of its bones was updated or if the influences of its instance changed. It is also selected if the last frame's level did
-// not have it. With morph targets, changed weights of the instance select it too. With KEEP, the clusters of the last frame are
-// skinned once more, so that their last positions become their current ones. A thread decides for one cluster. With FINISH, a
-// thread stores the InstanceLod and weights of one instance for the next frame. With CLEAR, it also clears the instance's
-// updated bones. The first thread writes the arguments of the dispatch.
+// Selects the clusters to be skinned, among the clusters of visible instances at their level of detail. A thread decides for
+// one cluster. A cluster is selected if one of its bones was updated, or if the influences of its instance changed. It is also
+// selected if the last frame's level did not contain it. With morph targets, changed weights of the instance select it too.
+// With KEEP, the clusters of the last frame are skinned once more, so that their last positions become their current positions.
+//
+// With FINISH, a thread stores the InstanceLod and weights of one instance for the next frame. With CLEAR, the thread also
+// clears the instance's updated bones. The first thread writes the arguments of the dispatch.
 import package::wgsl::dispatch::rows_of_workgroups;
 import package::wgsl::skinning::cluster::{CLUSTER, CLUSTER_FRESH, CLUSTER_MOVED, CLUSTER_STILL};
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 
+// Whether the dispatch stores the instances' state for the next frame, instead of selecting clusters.
 override FINISH: bool = false;
+// With FINISH, whether the updated bones are cleared.
 override CLEAR: bool = false;
-// Whether last positions are kept.
+// Whether the positions of the last frame are kept.
 override KEEP: bool = false;
 
-// Words per instance in `skinned`, before its weights.
+// Number of words per instance in `skinned` before the instance's weights.
 const SKINNED_WORDS: u32 = 4u;
 
+// Parameters of the kernel `skinning/select`.
 struct SelectParams {
+    // Number of instances.
     instances: u32,
+    // Number of clusters of the mesh.
     clusters: u32,
-    // Words of a bone set, with one bit per bone.
+    // Number of words of a bone set, with one bit per bone.
     words: u32,
-    // The largest number of workgroups along x.
+    // Largest number of workgroups along x.
     most: u32,
+    // Number of vertices of the mesh.
     vertices: u32,
     // Number of morph targets.
     targets: u32,
-    // Number of clusters at each level of detail.
+    // Number of clusters of the mesh at each level of detail.
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
-// Workgroups of the dispatch, the number of pairs, and the counter of pairs found so far.
+// Arguments of the skinning dispatch, with the number of pairs and a counter.
 struct Dispatched {
+    // Number of workgroups along x.
     x: u32,
+    // Number of workgroups along y.
     y: u32,
+    // Number of workgroups along z.
     z: u32,
+    // Number of pairs to be skinned.
     pairs: u32,
+    // Number of pairs found so far.
     count: atomic<u32>,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: SelectParams;
-// The bones of each cluster, one bit per bone.
+// Bone set of each cluster, one bit per bone.
 @group(0) @binding(1) var<storage, read> masks: array<u32>;
-// The updated bones of each instance, one bit per bone.
+// Set of updated bones of each instance, one bit per bone.
 @group(0) @binding(2) var<storage, read_write> updated_bones: array<u32>;
 // Level of detail of each instance.
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
-// The weights of each instance's targets, as bits.
+// Weights of the targets as bits, instance by instance.
 @group(0) @binding(4) var<storage, read> weights: array<u32>;
-// Index of each vertex's first delta; one more entry than there are vertices.
+// Index of each vertex's first delta, and at the end the number of deltas.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
 // State of each instance after the last frame: its InstanceLod, the number of frames for which it has been visible (at most 2),
 // and its weights.
 @group(0) @binding(6) var<storage, read_write> skinned: array<u32>;
-// Pairs to be skinned: cluster * instances + instance. With KEEP, the state of every pair follows: `CLUSTER_STILL`,
+// Out: pairs to be skinned, cluster * instances + instance. With KEEP, the state of every pair follows: `CLUSTER_STILL`,
 // `CLUSTER_MOVED` or `CLUSTER_FRESH`.
 @group(0) @binding(7) var<storage, read_write> pairs: array<u32>;
+// Arguments of the skinning dispatch.
 @group(0) @binding(8) var<storage, read_write> dispatched: Dispatched;
 
+// Number of clusters at a level of detail.
 fn clusters_of(level: u32) -> u32 {
     let at = min(level, MAX_LEVELS - 1u);
     return params.levels[at >> 2u][at & 3u];
 }
 
+// Stores the state of one instance for the next frame. The first thread also writes the arguments of the dispatch.
 fn finish(index: u32) {
     if index < params.instances {
         let to = index * (SKINNED_WORDS + params.targets);
@@ -90,7 +106,8 @@ fn finish(index: u32) {
     }
 }
 
-// Whether morph targets move a vertex of the cluster and one of the instance's weights has changed.
+// Whether the cluster must be morphed again: targets move one of its vertices, and a weight of the instance has changed. `last`
+// is the index of the instance's state in `skinned`.
 fn is_morphed_anew(cluster: u32, instance: u32, last: u32) -> bool {
     let first = CLUSTER * cluster;
     if offsets[first] == offsets[min(first + CLUSTER, params.vertices)] {

@@ -1,63 +1,74 @@
 // Skinning (A section 8.4): transforms vertices by their bones, with the number of influences in each instance's InstanceLod.
-// Instances that are not visible, and vertices beyond an instance's level of detail, are skipped. A workgroup skins one listed
-// cluster of one instance. Instances vary faster than clusters, so that a cluster's vertices stay in the cache.
+// Invisible instances, and vertices beyond an instance's level of detail, are skipped. A workgroup skins one listed cluster of
+// one instance. In the list, instances vary faster than clusters, so that a cluster's vertices stay in the cache.
 import package::wgsl::skinning::cluster::{CLUSTER, CLUSTER_FRESH};
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 import package::wgsl::skinning::page::NO_PAGE;
 import package::wgsl::skinning::rows::{Rows, rows_of_dual, unit_or};
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position};
 
-// Whether the palette holds dual quaternions instead of matrices.
+// Whether the palette holds dual quaternions and stretches instead of matrices.
 override DUAL: bool = false;
-// Whether each instance has its own (morphed) vertices, in the layout of the output, instead of the mesh's.
+// Whether each instance has morphed vertices of its own, in the layout of the output. If false, all instances use the mesh's
+// vertices.
 override MORPHED: bool = false;
-// Whether the output lies in pages. Clusters without a page are skipped.
+// Whether the output lies in pages. If so, clusters without a page are skipped.
 override PAGED: bool = false;
-// With PAGED, whether the positions of the last frame are kept.
+// Whether the positions of the last frame are kept; only with PAGED.
 override KEEP: bool = false;
 
+// Parameters of the kernel `skinning/skin`.
 struct SkinParams {
+    // Number of vertices of the mesh.
     vertices: u32,
     // Number of clusters of the mesh times number of instances.
     pairs: u32,
     // Number of bones of the skin.
     bones: u32,
+    // Number of instances.
     instances: u32,
-    // With KEEP, the index in `skinned` of the last positions, two pairs per vertex.
+    // Index in `skinned` of the last positions, two pairs per vertex; used with KEEP.
     last: u32,
-    // Number of clusters at each level of detail.
+    // Number of clusters of the mesh at each level of detail.
     levels: array<vec4<u32>, MAX_LEVELS / 4u>,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: SkinParams;
-// Five pairs per vertex: position, normal, tangent and handedness.
+// Vertices, five pairs of floats each: position, normal, tangent and handedness.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
-// Two words per cluster: the index of its influences, and the largest number per vertex. Influences are columns of CLUSTER
-// words: first the bones, two per word, then the weights of all but the strongest, in descending order.
+// Two words per cluster: the index of its influences, and the largest number of influences per vertex. Influences are columns
+// of CLUSTER words: first the bones, two per word, then the weights of all but the strongest bone, in descending order.
 @group(0) @binding(2) var<storage, read> influences: array<u32>;
-// Three rows per bone and instance, or with DUAL four vectors.
+// Three rows per bone and instance. With DUAL, four vectors per bone and instance.
 @group(0) @binding(3) var<storage, read> palette: array<vec4<f32>>;
+// Level of detail of each instance.
 @group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
-// Pairs to be skinned: cluster * instances + instance. With KEEP, the state of every pair follows, as skinning/select writes
-// it.
+// Pairs to be skinned: cluster * instances + instance. With KEEP, the state of every pair follows, as written by
+// skinning/select.
 @group(0) @binding(5) var<storage, read> pairs: array<u32>;
-// Workgroups of the dispatch, and the number of pairs.
+// Numbers of workgroups of the dispatch (xyz), and the number of pairs (w).
 @group(0) @binding(6) var<storage, read> dispatched: vec4<u32>;
-// Skinned vertices in the layout of `vertices`, instance by instance or page by page. With KEEP, the last positions follow, two
-// pairs per vertex; the fourth number is unused.
+// Out: skinned vertices in the layout of `vertices`, instance by instance or page by page. With KEEP, the last positions
+// follow, two pairs per vertex; the fourth number is unused.
 @group(0) @binding(7) var<storage, read_write> skinned: array<vec2<f32>>;
-// With PAGED the page of each cluster of each instance.
+// Page of each cluster of each instance, with PAGED.
 @group(0) @binding(8) var<storage, read> page_table: array<u32>;
 
-// A weighted sum of bones: rows of matrices, or rotation, dual part, diagonal and the elements above it.
+// A weighted sum of bones: three rows of a matrix, or with DUAL four vectors.
 struct Sum {
+    // Row for x; with DUAL, the rotation.
     a: vec4<f32>,
+    // Row for y; with DUAL, the dual part.
     b: vec4<f32>,
+    // Row for z; with DUAL, the diagonal of the stretch.
     c: vec4<f32>,
+    // With DUAL, the elements of the stretch above the diagonal.
     d: vec4<f32>,
 }
 
-// Adds a bone. `side` is its weight, negated if its quaternion and the strongest bone's lie in opposite hemispheres.
+// Adds a bone, whose palette data begins at `at`, to a weighted sum. `side` is the bone's weight, negated if its quaternion and
+// the strongest bone's quaternion lie in opposite hemispheres.
 fn added(sum: Sum, at: u32, weight: f32, side: f32) -> Sum {
     if DUAL {
         return Sum(
@@ -68,6 +79,7 @@ fn added(sum: Sum, at: u32, weight: f32, side: f32) -> Sum {
         sum.a + weight * palette[at], sum.b + weight * palette[at + 1u], sum.c + weight * palette[at + 2u], sum.d);
 }
 
+// Matrix of a weighted sum of bones.
 fn matrix_of(sum: Sum) -> Rows {
     if DUAL {
         return rows_of_dual(sum.a, sum.b, sum.c, sum.d);
@@ -75,7 +87,8 @@ fn matrix_of(sum: Sum) -> Rows {
     return Rows(sum.a, sum.b, sum.c);
 }
 
-// The blended matrix of a vertex. `column` is the start of its column in the cluster's influences.
+// Blended matrix of a vertex. `column` is the index of the vertex's first word of influences, and `slots` the largest number of
+// influences per vertex in the cluster.
 fn blended(column: u32, slots: u32, first_bone: u32, instance_lod: InstanceLod) -> Rows {
     let stride = select(3u, 4u, DUAL);
     var bones = influences[column];
@@ -165,7 +178,7 @@ fn main(
     let y = rows.y.xyz;
     let z = rows.z.xyz;
     let position = vec3<f32>(dot(x, old) + rows.x.w, dot(y, old) + rows.y.w, dot(z, old) + rows.z.w);
-    // The rows of the cofactor matrix.
+    // First row of the cofactor matrix; the other rows follow below.
     let of_x = cross(y, z);
     let side = select(1.0, -1.0, dot(x, of_x) < 0.0);
     let normal = unit_or(

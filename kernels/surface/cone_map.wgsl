@@ -1,69 +1,75 @@
-// Cone maps of a batch of height maps, computed from their pyramids. A thread computes the cone of one bilinear
-// cell: upright, on the cell's highest corner, and as wide as it can be while a ray inside it crosses the
-// surface at most once.
+// Cone maps of a batch of height maps, computed from their max-mip pyramids. A thread computes the cone of one bilinear cell.
+// The cone stands upright on the cell's highest corner. It is as wide as possible while a ray inside it crosses the surface at
+// most once.
 //
-// A ray that crosses the surface twice leaves it somewhere in between, at a place where the surface ahead falls
-// faster than the ray. The cone must therefore stay above every cell where a ray from this cell can leave the
-// surface. It may cut through cells in which the surface rises along every such ray (`rises`). The bounds hold
-// for every point of both cells: they use smallest distances and largest heights. Nodes are searched nearest
-// first and skipped when they cannot narrow the cone. Nodes that look small from the cell are treated as a
-// whole, so that the search takes O(log N) per cell.
+// A ray that crosses the surface twice leaves it in between, at a place where the surface ahead falls faster than the ray. The
+// cone must therefore stay above every cell where a ray from this cell can leave the surface. The cone may cut through cells in
+// which the surface rises along every such ray (`rises`). The bounds hold for every point of both cells: they use smallest
+// distances and largest heights. Nodes are searched nearest first and skipped when they cannot narrow the cone. Nodes that look
+// small from the cell are treated as a whole, so that the search takes O(log N) per cell.
 import package::wgsl::surface::ray::SURFACE_WRAP;
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index, surface_levels};
 
-// Ratio of distance to size from which a node of the pyramid is treated as a whole. Larger values give wider cones and a slower
-// computation: 4 saves one load in 25 in a march, and takes 1.5 times as long to compute.
+// Ratio of distance to size from which on a node of the pyramid is treated as a whole. Larger values give wider cones and a
+// slower computation: 4 saves one load in 25 in a march, and takes 1.5 times as long to compute.
 const OPENING: f32 = 2.0;
 
+// Parameters of the kernel `surface/cone_map`.
 struct ConeParams {
-    // Texels of a map along x and y.
+    // Number of texels of a map along x and y.
     size: vec2<u32>,
-    // Cells of a map along x and y.
+    // Number of cells of a map along x and y.
     cells: vec2<u32>,
-    // Nodes per row of one map's pyramid.
+    // Number of nodes per row of one map's pyramid.
     pitch: u32,
-    // Rows of one map's pyramid.
+    // Number of rows of one map's pyramid.
     rows: u32,
-    // Cones per row of the output.
+    // Number of cones per row of the output.
     cone_pitch: u32,
+    // Address mode: SURFACE_WRAP or SURFACE_CLAMP.
     address: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: ConeParams;
+// Heights of all maps, row by row, 0 to 1.
 @group(0) @binding(1) var<storage, read> heights: array<f32>;
+// Max-mip pyramids of all maps.
 @group(0) @binding(2) var<storage, read> pyramids: array<f32>;
-// Highest corner, and the radius of the cone in cells at height 1 above it.
+// Out, per cell: height of the highest corner (x), and radius of the cone in cells at height 1 above the corner (y).
 @group(0) @binding(3) var<storage, read_write> cones: array<vec2<f32>>;
 
-// Lower bound of the rises that radii are divided by.
+// Smallest rise by which a distance is divided.
 const LEAST_RISE: f32 = 1e-9;
-// The radius of a cone that nothing narrows.
+// Radius of a cone that nothing narrows, in cells at height 1 above its corner.
 const WIDEST: f32 = 1e9;
-// Safety factor of radii, below 1: it takes off more than the rounding of their quotients can add.
+// Safety factor of radii, below 1. It reduces a radius by more than rounding can increase it.
 const NARROWING: f32 = 0.999999;
-// A limit that no search reaches.
+// Largest number of nodes that a search visits; no search reaches it.
 const MAX_VISITS: u32 = 65536u;
 
+// Largest height below a node of a map's pyramid.
 fn highest(map: u32, level: u32, node: vec2<i32>) -> f32 {
     let at = vec2<u32>(surface_atlas_at(params.cells, level, node));
     return pyramids[(map * params.rows + at.y) * params.pitch + at.x];
 }
 
+// Height at the first corner of a cell.
 fn texel(map: u32, at: vec2<i32>) -> f32 {
     return heights[surface_corner_index(params.size, params.address, map, at)];
 }
 
-// The largest radius for which the cone stays above the corners of a leaf that is `offset` cells away. Over a
-// cell, the difference of the bilinear patch and a plane is largest at a corner, and the distance is at least
-// the one along the line to the cell's center.
+// Largest radius for which the cone stays above the corners of a leaf that is `offset` cells away. `own` is the height of the
+// cone's tip. Over a cell, the difference of the bilinear patch and a plane is largest at a corner. The distance is at least
+// the distance along the line to the cell's center.
 fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
     let away = vec2<f32>(abs(offset));
     let center = max(away - 0.5, vec2<f32>(0.0));
     let direction = center / max(length(center), 0.5);
-    // Distances from the nearest edge of the own cell to the near and the far edge of the leaf.
+    // Distances from the nearest edge of the own cell to the near edge and to the far edge of the leaf.
     let near = max(away - 1.0, vec2<f32>(0.0)) * direction;
     let far = away * direction;
-    // The corners are selected by sign, since which side is near depends on where the leaf is.
+    // The corners are selected by sign, because the position of the leaf decides which side is near.
     let x = select(vec2<f32>(near.x, far.x), vec2<f32>(far.x, near.x), offset.x < 0);
     let y = select(vec2<f32>(near.y, far.y), vec2<f32>(far.y, near.y), offset.y < 0);
     let distances = vec4<f32>(x.x + y.x, x.y + y.x, x.x + y.y, x.y + y.y);
@@ -73,7 +79,7 @@ fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
     return min(min(allowed.x, allowed.y), min(allowed.z, allowed.w));
 }
 
-// Whether the surface rises all along a leaf on every path from the own cell, so that no ray leaves it there.
+// Whether the surface of a leaf rises on every path from the own cell, so that no ray leaves the surface there.
 fn rises(corners: vec4<f32>, offset: vec2<i32>) -> bool {
     let along_x = vec2<f32>(corners.y - corners.x, corners.w - corners.z);
     let along_y = vec2<f32>(corners.z - corners.x, corners.w - corners.y);
@@ -85,7 +91,8 @@ fn rises(corners: vec4<f32>, offset: vec2<i32>) -> bool {
     return x + y >= 0.0;
 }
 
-// Narrows `radius` by the nodes of one periodic image of the tile; `cell` is counted from that image.
+// Narrows `radius` by the nodes of one periodic image of the tile. `cell` is counted from that image, and `own` is the height
+// of the cell's highest corner.
 fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
     let cells = vec2<i32>(params.cells);
     let top = surface_levels(params.cells) - 1u;
@@ -94,7 +101,7 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
     var narrowest = radius;
     var level = top;
     var node = vec2<i32>(0);
-    // For each level, which child of its parent the node is in the order of the search; two bits per level.
+    // Position of the current node in the search order of its parent's four children; two bits per level.
     var orders = 0u;
     for (var visit = 0u; visit < MAX_VISITS; visit++) {
         let low = node << vec2<u32>(level);
@@ -143,7 +150,7 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
     return narrowest;
 }
 
-// The child of `parent`, at `level`, that is nearest to a cell.
+// Child of `parent` that is nearest to a cell. `level` is the child's level.
 fn nearest_child(parent: vec2<i32>, cell: vec2<i32>, level: u32) -> vec2<i32> {
     let middle = (2 * parent + 1) << vec2<u32>(level);
     return 2 * parent + select(vec2<i32>(0), vec2<i32>(1), cell >= middle);

@@ -1,59 +1,75 @@
-// Tangent frames at the vertices of a triangle mesh (B section 4.2). Each vertex gathers the tangents of its
-// triangles in ascending order, so that no atomics are needed and the sum is the same in every run.
+// Tangent frames at the vertices of a triangle mesh (B section 4.2). Each vertex gathers the tangents of its triangles in
+// ascending order. No atomics are needed, and the sum is the same in every run.
 
+// Parameters of the kernel `surface/tangent`.
 struct TangentParams {
+    // Number of vertices.
     vertices: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: TangentParams;
+// Positions, three floats per vertex.
 @group(0) @binding(1) var<storage, read> positions: array<f32>;
-// Normals as bits: they need not be finite, and a shader may assume that floats are.
+// Normals as bits, three words per vertex. They need not be finite, and a shader may assume that floats are finite.
 @group(0) @binding(2) var<storage, read> normals: array<u32>;
+// Texture coordinates, two floats per vertex.
 @group(0) @binding(3) var<storage, read> texture_coordinates: array<f32>;
+// Indices of the triangles' vertices, three per triangle.
 @group(0) @binding(4) var<storage, read> indices: array<u32>;
-// Index of each vertex's first corner; then the corners, which are positions in `indices`.
+// Index in `corners` of each vertex's first corner, and at the end the number of corners.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
+// Corners of each vertex, as positions in `indices`.
 @group(0) @binding(6) var<storage, read> corners: array<u32>;
+// Out: unit tangent of each vertex (xyz), and handedness w, 1 or -1.
 @group(0) @binding(7) var<storage, read_write> tangents: array<vec4<f32>>;
 
-// 2^-100, below which a vector has no direction.
+// Length below which a vector has no direction: 2^-100.
 const LEAST: f32 = 7.888609052210118e-31;
-// The bits of `LEAST`.
+// Bits of the f32 `LEAST`.
 const LEAST_BITS: u32 = 0x0d800000u;
-// The bits of 2^100.
+// Bits of the f32 2^100. A normal with a larger component counts as without direction.
 const LARGEST_BITS: u32 = 0x71800000u;
-// A triangle contributes nothing if its area, its tangent or its area in uv is no larger than this. All three are
-// measured after scaling the triangle to a box of edge 1, and in uv each direction separately. The errors of f32 are at
-// most a sixteenth of it: they rotate a tangent of this length by less than four degrees.
+// A triangle contributes nothing if its area, its tangent or its area in uv is no larger than this. All three are measured
+// after the triangle is scaled to a box of edge 1, and in uv each direction separately. Errors of f32 are at most a sixteenth
+// of this value: they rotate a tangent of this length by less than four degrees.
 const DEGENERATE: f32 = 1.0 / 16384.0;
-// A sum of tangents counts as 0 if its part orthogonal to the normal is no more than this fraction of the weights. The
-// handedness is negative if its sum is below minus this fraction.
+// A sum of tangents counts as 0 if its component orthogonal to the normal is no longer than this fraction of the weights. The
+// handedness is negative if its sum is below minus this fraction of the weights.
 const VANISHING: f32 = 1.0 / 64.0;
 
+// Contribution of one triangle to the tangent of a vertex.
 struct Contribution {
+    // Unit tangent times the weight, with the sign of the area in uv.
     tangent: vec3<f32>,
+    // Weight by the triangle's angle at the vertex.
     weight: f32,
+    // Weight times the cosine between the normals of vertex and triangle, with the sign of the area in uv.
     handedness: f32,
 }
 
+// Position of a vertex.
 fn position(vertex: u32) -> vec3<f32> {
     return vec3<f32>(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]);
 }
 
+// Texture coordinates of a vertex.
 fn texture_coordinate(vertex: u32) -> vec2<f32> {
     return vec2<f32>(texture_coordinates[2u * vertex], texture_coordinates[2u * vertex + 1u]);
 }
 
+// Largest absolute component of a vector.
 fn largest(vector: vec3<f32>) -> f32 {
     let size = abs(vector);
     return max(max(size.x, size.y), size.z);
 }
 
+// The vector scaled to length 1. Its length must not be 0.
 fn unit(vector: vec3<f32>) -> vec3<f32> {
     return vector * inverseSqrt(dot(vector, vector));
 }
 
-// The contribution of a corner's triangle to the corner's vertex.
+// Contribution of a triangle to the vertex at one of its corners. `normal` is the vertex's unit normal.
 fn contribution(corner: u32, normal: vec3<f32>) -> Contribution {
     let nothing = Contribution(vec3<f32>(0.0), 0.0, 0.0);
     let first = corner - corner % 3u;
@@ -86,13 +102,14 @@ fn contribution(corner: u32, normal: vec3<f32>) -> Contribution {
     return Contribution(unit(along) * signed_weight, weight, signed_weight * dot(normal, unit(face)));
 }
 
-// The first vector of the basis of Duff et al. 2017 for a unit normal.
+// First vector of the basis by Duff et al. 2017 for a unit normal. `negative_z` selects the sign.
 fn fallback(normal: vec3<f32>, negative_z: bool) -> vec3<f32> {
     let side = select(1.0, -1.0, negative_z);
     let a = -1.0 / (side + normal.z);
     return vec3<f32>(1.0 + side * normal.x * normal.x * a, side * normal.x * normal.y * a, -side * normal.x);
 }
 
+// Unit tangent of a vertex (xyz), and handedness w, 1 or -1.
 fn frame(vertex: u32) -> vec4<f32> {
     let bits = vec3<u32>(normals[3u * vertex], normals[3u * vertex + 1u], normals[3u * vertex + 2u]);
     let magnitude = bits & vec3<u32>(0x7fffffffu);
@@ -117,7 +134,7 @@ fn frame(vertex: u32) -> vec4<f32> {
         return vec4<f32>(fallback(normal, (bits.z >> 31u) == 1u), 1.0);
     }
     let tangent = unit(flat);
-    // Repeats the projection: if little was left of the sum, its rounding error is large.
+    // The projection is repeated: if little was left of the sum, its rounding error is large.
     let orthogonal = unit(tangent - normal * dot(normal, tangent));
     return vec4<f32>(orthogonal, select(1.0, -1.0, handedness < -least));
 }

@@ -1,5 +1,5 @@
-// The top-down colour map of patches: the ground's textures by zones (B equations 3.6 and 3.7) and hill-shading, one sRGB pixel
-// per sample. The kernel reads windows that extend one sample beyond the patch.
+// Colour map of patches, seen from above: the ground's textures by zones (B equations 3.6 and 3.7) and hill-shading, one sRGB
+// pixel per sample. The kernel reads windows that extend one sample beyond the patch.
 import package::wgsl::terrain::fixed::HEIGHT_ONE;
 import package::wgsl::terrain::light::{Light, lit};
 import package::wgsl::terrain::slope::slope_normal;
@@ -8,31 +8,37 @@ import package::wgsl::terrain::tiles::{MapZone, plane_tiles, texel_index, tiles_
 import package::wgsl::terrain::windows::{gradient_at, inner_index, is_inner, sample_index, windows};
 import package::wgsl::terrain::zones::{steepness, zone_blend, zone_blended, zone_color};
 
+// Parameters of the kernel `terrain/blend`.
 struct MapParams {
+    // Light of the hill-shading.
     light: Light,
-    // Samples along an edge of a window.
+    // Number of samples along an edge of a window.
     width: u32,
-    // Twice the distance between samples, in 1/65536 units.
+    // Twice the distance between samples, in 1/65536 world units.
     run: f32,
+    // Number of zones.
     zone_count: u32,
+    // 1 if zone weights are added without normalization, 0 if they are normalized.
     additive: u32,
-    // Number of planes that textures are projected from: 1 (from above) or 3 (triplanar).
+    // Number of planes from which textures are projected: 1 (from above) or 3 (triplanar).
     planes: u32,
-    // Texture tiles per sample, in 2^-22 tiles.
+    // Number of texture tiles per sample, in 2^-22 tiles.
     tiles_per_sample: u32,
-    // Texture tiles per unit of height, in 2^-22 tiles.
+    // Number of texture tiles per unit of height, in 2^-22 tiles.
     tiles_per_unit: u32,
     // Strength of the colour variation, 0 to 1.
     variation: f32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: MapParams;
+// Zones of the ground and their textures.
 @group(0) @binding(2) var<storage, read> zones: array<MapZone>;
-// Linear colour and height of texels, 16 bits each.
+// Texels of all textures: linear colour and height, 16 bits each.
 @group(0) @binding(3) var<storage, read> texels: array<vec2<u32>>;
-// The position in tiles of the first pixel of each map, in 2^-22 tiles.
+// Position of the first pixel of each map, in 2^-22 tiles.
 @group(0) @binding(4) var<storage, read> places: array<vec2<u32>>;
-// RGBA, 8 bits each, red in the lowest byte.
+// Out: sRGB pixels, RGBA with 8 bits each, red in the lowest byte.
 @group(0) @binding(5) var<storage, read_write> pixels: array<u32>;
 
 @compute @workgroup_size(64)
@@ -45,7 +51,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let height = f32(fixed_height) / f32(HEIGHT_ONE);
     let normal = slope_normal(gradient_at(params.width, sample), params.run);
     let steep = steepness(normal);
-    // The place in 2^-22 tiles: east, up, south.
+    // The position in 2^-22 tiles: east, up, south.
     let place = places[id.z] + id.xy * params.tiles_per_sample;
     let tiles = vec3<u32>(place.x, tiles_up(fixed_height, params.tiles_per_unit), place.y);
     var weights = vec3<f32>(1.0, 0.0, 0.0);
@@ -67,14 +73,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     pixels[inner_index(params.width, id)] = pack4x8unorm(vec4<f32>(srgb(lit(params.light, normal, albedo)), 1.0));
 }
 
-// The linear colour and height of a texel, 0 to 1.
+// Linear colour (rgb) and height (w) of a texel, 0 to 1.
 fn texel_at(index: u32) -> vec4<f32> {
     let texel = texels[index];
     return vec4<f32>(unpack2x16unorm(texel.x), unpack2x16unorm(texel.y));
 }
 
-// The sRGB transfer function, within 1/100 of a level of 255. A minimax polynomial in the fourth root of x replaces 1.055
-// x^(1/2.4) − 0.055; its largest error from 0.0031308 to 1 is 3.4e-5. Software adapters take six times as long for a power.
+// sRGB transfer function, within 1/100 of a level of 255. A minimax polynomial in the fourth root of x replaces 1.055 x^(1/2.4)
+// − 0.055. Its largest error from 0.0031308 to 1 is 3.4e-5. Software adapters take six times as long for a power.
 fn srgb(linear: vec3<f32>) -> vec3<f32> {
     let bounded = clamp(linear, vec3<f32>(0.0), vec3<f32>(1.0));
     let root = sqrt(sqrt(bounded));

@@ -1,18 +1,22 @@
-// Replaces every point that is further than the threshold from the mean of its four neighbours by that mean (B
-// figure 5.10). Injected points are left alone. Each window loses its outermost ring of samples.
+// Removes spikes: every point that differs from the mean of its four neighbours by more than the threshold is replaced by that
+// mean (B figure 5.10). Injected points are left unchanged. Each window loses its outermost ring of samples.
 import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 import package::wgsl::terrain::fixed::mean_of_four;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, has_feature};
 
+// Parameters of the kernel `terrain/despike`.
 struct DespikeParams {
-    // The index of the injected points of the windows.
+    // Feature grids of the windows, which mark injected points.
     features: FeatureGrid,
-    // Samples along an edge of a window.
+    // Number of samples along an edge of a window.
     width: u32,
+    // Largest difference that is not a spike, in 1/65536 units.
     threshold: i32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: DespikeParams;
+// Out: heights of the inner samples of all windows, in 1/65536 units.
 @group(0) @binding(2) var<storage, read_write> outputs: array<i32>;
 
 @compute @workgroup_size(64)

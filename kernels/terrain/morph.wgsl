@@ -1,17 +1,21 @@
-// A blend of two height fields (B section 4.4, targetHeight): from + floor((to - from) * time), in integers. A thread makes
+// Blend of two height fields (B section 4.4, targetHeight): from + floor((to - from) * time), in integers. A thread computes
 // four samples.
 
+// Parameters of the kernel `terrain/morph`.
 struct MorphParams {
     // Number of vectors of four heights.
     vectors: u32,
-    // The time, 0 to 65536.
+    // Time of the blend: 0 (start heights) to 65536 (target heights).
     time: u32,
 }
 
+// Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: MorphParams;
+// Heights at time 0, in 1/65536 units.
 @group(0) @binding(1) var<storage, read> start_heights: array<vec4<i32>>;
+// Heights at time 65536, in 1/65536 units.
 @group(0) @binding(2) var<storage, read> target_heights: array<vec4<i32>>;
-// The last vector may extend past the last height, into room that buffers have.
+// Out: blended heights. The last vector may extend past the last height, into the padding of the buffers.
 @group(0) @binding(3) var<storage, read_write> heights: array<vec4<i32>>;
 
 @compute @workgroup_size(64)

@@ -1,17 +1,18 @@
-// One level of smooth subdivision for a batch of windows onto the plane: four-point interpolation (Dyn, Levin and Gregory 1987)
-// in both directions, with random offsets. A thread computes all centers that its points on edges depend on, in the cells
-// around its coarse point. Threads therefore need no barrier, and a level is one dispatch.
+// One level of smooth subdivision for a batch of windows of the plane: four-point interpolation (Dyn, Levin and Gregory 1987)
+// in both directions, with random offsets. A thread computes all centers on which its edge points depend, in the cells around
+// its coarse point. Threads therefore need no barrier, and a level is one dispatch.
 import package::wgsl::terrain::fixed::{four_point, limited, mean_of_two};
 import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 
-// Points on every side for which features are listed in addition to those of `terrain/height`: edges of a window depend on
-// centers up to three points outside of it.
+// Number of points on every side for which features are listed in addition to `terrain/height`. Edges of a window depend on
+// centers up to three points outside the window.
 const FEATURE_SHIFT = 2;
 
-// A row of coarse points, seen from one of them.
+// Heights along a row of coarse points, around one of the points.
 struct Row {
+    // Height of the point itself.
     own: i32,
-    // Interpolated values at the middles of four cells. The columns of the cells, relative to the own one: -2, -1, 0, 1.
+    // Interpolated heights at the middles of four cells, whose columns relative to the own cell are -2, -1, 0 and 1.
     along: vec4<i32>,
 }
 
@@ -21,11 +22,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let window = id.z;
-    // The coarse window begins three coarse points before the coarse point at the fine window's first sample, or just before
-    // it.
+    // The coarse window begins three coarse points before the coarse point at the fine window's first sample. If no coarse
+    // point is there, the last one before it counts.
     let cell = vec2<i32>(id.xy) + 3;
     let at = 2 * vec2<i32>(id.xy) - (origins[window] & vec2<i32>(1));
-    // The coarse rows from three above the own one to three below it.
+    // Coarse rows from three above the own row to three below.
     let a = row_of(window, cell - vec2<i32>(0, 3));
     let b = row_of(window, cell - vec2<i32>(0, 2));
     let c = row_of(window, cell - vec2<i32>(0, 1));
@@ -33,14 +34,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let e = row_of(window, cell + vec2<i32>(0, 1));
     let f = row_of(window, cell + vec2<i32>(0, 2));
     let g = row_of(window, cell + vec2<i32>(0, 3));
-    // The centers of four cells in the own cell's column, and in its row. Their places relative to the own cell: -2, -1, 0, 1.
+    // Centers of four cells in the own cell's column, and in its row. Their positions relative to the own cell: -2, -1, 0, 1.
     let steps = vec4<i32>(-3, -1, 1, 3);
     let column = drawn(window, level.range, vec4<i32>(at.x + 1), at.y + steps, between(
         vec4<i32>(a.along.z, b.along.z, c.along.z, d.along.z), vec4<i32>(e.along.z, f.along.z, g.along.zz)));
     let across = drawn(window, level.range, at.x + steps, vec4<i32>(at.y + 1), four_point(
         c.along, d.along, e.along, f.along));
-    // Interpolated between four points. Lane x: the centers of the column. Lane y: the coarse points of the own column. Other
-    // lanes: the centers of the row.
+    // Values interpolated between four points. Lane x: the centers of the column. Lane y: the coarse points of the own column.
+    // Other lanes: the centers of the row.
     let middles = four_point(
         vec4<i32>(column.x, c.own, across.xx), vec4<i32>(column.y, d.own, across.yy),
         vec4<i32>(column.z, e.own, across.zz), vec4<i32>(column.w, f.own, across.ww));
@@ -49,19 +50,21 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     store_four(window, at, vec4<i32>(d.own, edges.x, edges.y, across.z));
 }
 
+// The coarse row around a point, with interpolated heights.
 fn row_of(window: u32, cell: vec2<i32>) -> Row {
     let y = vec4<i32>(cell.y);
     let before = coarse_points(window, cell.x + vec4<i32>(-3, -2, -1, 0), y);
     return Row(before.w, between(before, coarse_points(window, cell.x + vec4<i32>(1, 2, 3, 3), y)));
 }
 
-// Interpolated values between every four consecutive ones of seven. The last lane of `after` is unused.
+// Interpolated values between the middle two of each four consecutive values, for seven values in all. The last lane of `after`
+// is unused.
 fn between(before: vec4<i32>, after: vec4<i32>) -> vec4<i32> {
     return four_point(
         before, vec4<i32>(before.yzw, after.x), vec4<i32>(before.zw, after.xy), vec4<i32>(before.w, after.xyz));
 }
 
-// Adds random offsets to four interpolated heights, and injects features; (x, y) are places in the window.
+// Adds random offsets to four interpolated heights, and injects features. (x, y) are the positions of the points in the window.
 fn drawn(window: u32, range: u32, x: vec4<i32>, y: vec4<i32>, interpolated: vec4<i32>) -> vec4<i32> {
     let origin = origins[window];
     let heights = limited(interpolated) + offsets(range, origin.x + x, origin.y + y);

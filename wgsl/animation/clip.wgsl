@@ -1,63 +1,67 @@
-// The tables of a set of clips, and positions in time.
+// Tables of a set of animation clips, and positions in time.
+//
+// Track word: the track's timeline, counted from the clip's first timeline, or CONSTANT; and its interpolation
+// (INTERPOLATION_STEP, INTERPOLATION_LINEAR or INTERPOLATION_SPLINE).
+// packed Track: timeline 30, interpolation 2
 
 // Location of a clip's data in a set of clips.
 struct ClipEntry {
-    // Index of its first timeline.
+    // Index of the clip's first timeline.
     first_timeline: u32,
-    // Number of its timelines.
+    // Number of the clip's timelines.
     timelines: u32,
-    // Duration in seconds.
+    // Duration of the clip in seconds.
     duration: f32,
-    // Index of its first row in gate tables. A clip has one row per time of its first timeline, and one more.
+    // Index of the clip's first row in gate tables. A clip has one row per time of its first timeline, and one row for the
+    // whole clip.
     first_row: u32,
 }
 
-// A list of key times that tracks share.
+// A list of key times that several tracks share.
 struct Timeline {
-    // Index of the first time.
+    // Index of the timeline's first key time.
     first_time: u32,
-    // Number of times, at least 1.
+    // Number of key times, at least 1.
     keys: u32,
 }
 
 // A position between two keys of a timeline.
 struct KeyframeCursor {
-    // The key before the time.
+    // Index in the timeline of the key before the time.
     key: u32,
-    // The fraction of the way from that key to the next, 0 to below 1; 0 before the first key and after the last.
+    // Fraction of the interval from `key` to the next key, 0 to below 1. The fraction is 0 before the first key and after the
+    // last.
     fraction: f32,
 }
 
-// The cursor in these two words. Sampling loads both in one memory operation, which decides its speed on CPUs. The members of a
-// struct would take one operation each.
+// Cursor that is stored in two words. Sampling loads both words in one memory operation, which decides its speed on CPUs. The
+// members of a struct would take one operation each.
 fn cursor_of_words(words: vec2<u32>) -> KeyframeCursor {
     return KeyframeCursor(words.x, bitcast<f32>(words.y));
 }
 
-// A track of a set, in two words that one memory operation loads; see timeline_of, interpolation_of and
-// first_value_of.
+// A track of a set of clips, in two words that one memory operation loads. Read the track with `timeline_of`,
+// `interpolation_of` and `first_value_of`.
 struct SetTrack {
-    // x: a track word. y: the index of the first value; for a constant spline, of the middle one of its three.
+    // x: the track word. y: the index of the track's first value, or of the middle one of three values if the track is a
+    // constant spline.
     words: vec2<u32>,
 }
 
-// Track word: the timeline, counted from the clip's first, or CONSTANT; and INTERPOLATION_STEP, INTERPOLATION_LINEAR or
-// INTERPOLATION_SPLINE.
-// packed Track: timeline 30, interpolation 2
-// The timeline of a track whose value never changes.
+// Timeline number of a track whose value never changes.
 const CONSTANT: u32 = 0x3fffffffu;
 
-// The timeline of a track, counted from the clip's first, or CONSTANT.
+// Timeline of a track, counted from the clip's first timeline, or CONSTANT.
 fn timeline_of(track: SetTrack) -> u32 {
     return track_timeline(track.words.x);
 }
 
-// Interpolation between a track's keys: INTERPOLATION_STEP or another.
+// Interpolation between a track's keys: one of the INTERPOLATION constants.
 fn interpolation_of(track: SetTrack) -> u32 {
     return track_interpolation(track.words.x);
 }
 
-// The index of a track's first value; for a constant spline, of the middle one of its three.
+// Index of a track's first value. For a constant spline, this is the middle one of its three values.
 fn first_value_of(track: SetTrack) -> u32 {
     return track.words.y;
 }

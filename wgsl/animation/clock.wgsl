@@ -1,13 +1,13 @@
-// The time inside a clip.
+// Conversion of elapsed time to time inside a clip.
 
-// Wrap code of instances that clamp times outside the clip to its start and end; 0 loops.
+// Wrap code of an instance whose times outside the clip are clamped to the clip's start and end. Code 0 loops.
 const WRAP_CLAMP = 1u;
 
-// Number of turns from which f32 cannot resolve a position in a clip.
+// Number of loops from which on an f32 cannot resolve a position in a clip.
 const MAX_TURNS: f32 = 16777216.0;
 
-// Converts a time in clip seconds, which may be negative, to seconds since the clip's start, 0 to `duration`. A
-// loop never returns `duration` itself, and returns 0 for times too large to resolve.
+// Converts a time in clip seconds, which may be negative, to seconds since the clip's start, 0 to `duration`. A looping clip
+// never gives `duration` itself, and gives 0 for times too large to resolve.
 fn inside_clip(wrap: u32, duration: f32, time: f32) -> f32 {
     if duration <= 0.0 {
         return 0.0;
@@ -15,7 +15,7 @@ fn inside_clip(wrap: u32, duration: f32, time: f32) -> f32 {
     if wrap == WRAP_CLAMP {
         return min(max(time, 0.0), duration);
     }
-    // The comparison is false for NaN.
+    // The comparison is false for NaN, so that NaN gives 0 too.
     if !(abs(time) < MAX_TURNS * duration) {
         return 0.0;
     }

@@ -1,8 +1,8 @@
-// Interpolation of values between keys, in tracks and in weights.
+// Interpolation of values between keys, in tracks and in morph weights.
 
-// Values stay constant until the next key.
+// Interpolation: a value stays constant until the next key.
 const INTERPOLATION_STEP: u32 = 0u;
-// A straight line; rotations take the shortest arc.
+// Interpolation along a straight line; rotations take the shortest arc.
 const INTERPOLATION_LINEAR: u32 = 1u;
-// A cubic Hermite spline: a key has an in-tangent, a value and an out-tangent.
+// Interpolation by a cubic Hermite spline: a key has an in-tangent, a value and an out-tangent.
 const INTERPOLATION_SPLINE: u32 = 2u;

@@ -1,6 +1,6 @@
-// Animation: the contents of the kernels' buffers (`AnimationInstance`, `ClipEntry`, `SetTrack`, `KeyframeCursor`, `Slot`,
-// `Lod`, `ClipClock`), times inside clips, rotations between keys, and the motion of bones. `build.rs` joins this file and its
-// imports into one text, for shaders that are not composed with WESL. Prepend that text to your own code.
+// Animation: the types in the kernels' buffers (`AnimationInstance`, `ClipEntry`, `SetTrack`, `KeyframeCursor`, `Slot`, `Lod`,
+// `ClipClock`), times inside clips, rotations between keys, and the motion of bones. `build.rs` joins this file and its imports
+// into one text, for shaders that are not composed with WESL. Prepend that text to your own code.
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::clip::{CONSTANT, ClipEntry, KeyframeCursor, SetTrack, Timeline, cursor_of_words, first_value_of, interpolation_of, timeline_of};
 import package::wgsl::animation::clock::{WRAP_CLAMP, inside_clip};

@@ -1,16 +1,16 @@
-// The order in which bones are walked, parents first, split into chains.
+// Order in which bones are processed: parents first, split into chains.
 
-// The place of a bone in the order.
+// Position of a bone in the order.
 struct Slot {
-    // The bone.
+    // Index of the bone.
     bone: u32,
-    // The parent bone, CONTINUES or NO_PARENT.
+    // Index of the parent bone, CONTINUES or NO_PARENT.
     parent: u32,
-    // Number of slots of the bone and all bones below it, starting with this one.
+    // Number of slots of the bone and all its descendants. They begin with this slot.
     subtree: u32,
 }
 
-// A run of slots from parent to child.
+// Consecutive slots that lead from parent to child.
 struct Chain {
     // Index of the first slot.
     first: u32,
@@ -18,7 +18,7 @@ struct Chain {
     count: u32,
 }
 
-// The parent of a root.
+// `Slot::parent` of a root bone.
 const NO_PARENT: u32 = 0xffffffffu;
-// The parent's bone is the slot before.
+// `Slot::parent` of a bone whose parent has the previous slot.
 const CONTINUES: u32 = 0xfffffffeu;

@@ -1,14 +1,14 @@
 // Interpolation of unit quaternions whose dot product is not negative.
 
-// The factor that minimizes the largest error of five terms on halved arcs.
+// Factor of the last coefficients. This value minimizes the largest error of five terms on halved arcs.
 const SLERP_REST: f32 = 1.15;
-// Coefficients of Eberly's polynomial (Eberly 2011) for cosines from √½ to 1: 1/(i(2i + 1)) for i from 1 to 5. The last one
+// Coefficients 1/(i(2i + 1)), for i from 1 to 5, of Eberly's polynomial (Eberly 2011) for cosines from √½ to 1. The last one
 // compensates for omitted terms.
 const SLERP_U = array<f32, 5>(1.0 / 3.0, 1.0 / 10.0, 1.0 / 21.0, 1.0 / 36.0, SLERP_REST / 55.0);
-// Coefficients i/(2i + 1), with the same compensation.
+// Coefficients i/(2i + 1), for i from 1 to 5, of Eberly's polynomial. The last one compensates for omitted terms.
 const SLERP_V = array<f32, 5>(1.0 / 3.0, 2.0 / 5.0, 3.0 / 7.0, 4.0 / 9.0, SLERP_REST * 5.0 / 11.0);
 
-// sin(t theta) / sin(theta) for less_one = cos(theta) - 1, for two values of t at once.
+// sin(t theta) / sin(theta), for two values of t at once. `less_one` is cos(theta) - 1.
 fn slerp_weights(t: vec2<f32>, less_one: f32) -> vec2<f32> {
     let square = t * t;
     var sum = 1.0 + (SLERP_U[4] * square - SLERP_V[4]) * less_one;
@@ -19,9 +19,9 @@ fn slerp_weights(t: vec2<f32>, less_one: f32) -> vec2<f32> {
     return t * sum;
 }
 
-// Spherical interpolation of unit quaternions (x, y, z, w) whose dot product is not negative, for t from 0 to
-// 1, at constant speed on the shortest arc. The arc is halved: the polynomial runs from the nearer end to the
-// unit quaternion in the middle. The error is within 1e-6.
+// Spherical interpolation of unit quaternions (x, y, z, w) at constant speed on the shortest arc, for `t` from 0 to 1. The dot
+// product of `a` and `b` must not be negative. The arc is halved: the polynomial runs from the nearer end to the unit
+// quaternion in the middle. The error is within 1e-6.
 fn slerp(a: vec4<f32>, b: vec4<f32>, t: f32) -> vec4<f32> {
     let cosine = dot(a, b);
     let inverse = inverseSqrt(2.0 + 2.0 * cosine);
@@ -34,7 +34,7 @@ fn slerp(a: vec4<f32>, b: vec4<f32>, t: f32) -> vec4<f32> {
     return select(b, a, is_first) * of_nearer + select(a, b, is_first) * of_middle;
 }
 
-// The quaternion scaled to length 1; it must not vanish.
+// The quaternion scaled to length 1. Its length must not be 0.
 fn unit_quaternion(q: vec4<f32>) -> vec4<f32> {
     return q * inverseSqrt(dot(q, q));
 }

@@ -1,9 +1,10 @@
-// The position of a time among the key times of a timeline.
+// Search of a time among the key times of a timeline.
 import package::wgsl::animation::clip::{KeyframeCursor, Timeline};
 
+// Key times of all timelines, in seconds.
 @group(0) @binding(4) var<storage, read> times: array<f32>;
 
-// The cursor on a timeline at a time. Among equal times, the last one counts.
+// Cursor of a time on a timeline. Among equal key times, the last one counts.
 fn keyframe_cursor(timeline: Timeline, time: f32) -> KeyframeCursor {
     let first = timeline.first_time;
     let last = timeline.keys - 1u;
@@ -15,7 +16,7 @@ fn keyframe_cursor(timeline: Timeline, time: f32) -> KeyframeCursor {
     if time >= end_time {
         return KeyframeCursor(last, 0.0);
     }
-    // Most clips have evenly spaced keys, so that a first guess is usually right.
+    // Most clips have evenly spaced keys, so a first guess is usually right.
     let evenly = (time - start) / (end_time - start) * f32(last);
     var key = min(u32(evenly), last - 1u);
     var before = times[first + key];

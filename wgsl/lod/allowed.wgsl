@@ -1,18 +1,19 @@
-// The allowed displacement: the largest distance by which a view lets a surface be off. This is the one formula from pixels to
-// levels, gates and influences; `src/lod/allowed.rs` is its reference.
+// Allowed displacement: the largest distance between the drawn and the exact surface that a view permits. Levels, gates and
+// influences all derive their limits from this formula, which starts from an error in pixels. `src/lod/allowed.rs` is the
+// reference.
 import package::wgsl::lod::view::{LodCamera, POSITION_SLACK};
 
-// Safety factor for floating-point error, in `camera_allows` and in everything computed from its result: rounding never permits
-// more than `pixels`.
+// Safety factor for floating-point error in `camera_allows` and in all values computed from its result. With this factor,
+// rounding never permits an error above `pixels`.
 const ALLOWED_MARGIN: f32 = 0.9999;
-// Upper bound of the allowed displacement, in model units. It keeps quotients of it finite.
+// Upper bound of the allowed displacement, in model units. It keeps divisions by a displacement finite.
 const MAX_ALLOWED: f32 = 1e9;
-// Lower bound of the scale that a displacement is divided by.
+// Smallest model scale by which an allowed displacement is divided. Smaller scales count as this one.
 const LEAST_SCALE: f32 = 1e-9;
 
-// Allowed displacement of a sphere in a camera, in world units: if every point inside is off by at most this distance, none is
-// drawn more than `pixels` from its place. It is 0 if a part of the sphere may reach the near plane. A sphere behind the camera
-// counts as if it were as far ahead. `docs/pixel-bounds.md` has the derivation.
+// Allowed displacement of a sphere in a camera, in world units. If every point inside the sphere is off by at most this
+// distance, no point moves by more than `pixels` on screen. The result is 0 if a part of the sphere may reach the near plane. A
+// sphere behind the camera counts as if it were at the same distance in front. `docs/pixel-bounds.md` has the derivation.
 fn camera_allows(camera: LodCamera, center: vec3<f32>, radius: f32) -> f32 {
     if camera.perspective == 0.0 {
         return ALLOWED_MARGIN * (camera.pixels / camera.focal);
@@ -32,7 +33,7 @@ fn camera_allows(camera: LodCamera, center: vec3<f32>, radius: f32) -> f32 {
     return select(allowed, 0.0, depth - allowed <= camera.near);
 }
 
-// Converts an allowed displacement from world units to model units. `scale` is the largest scale of the model.
+// Converts an allowed displacement from world units to model units. `scale` is the model's largest scale factor.
 fn allowed_in_model(allowed: f32, scale: f32) -> f32 {
     return min(allowed / max(scale, LEAST_SCALE), MAX_ALLOWED);
 }

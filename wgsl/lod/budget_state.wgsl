@@ -1,14 +1,14 @@
-// A budget of triangles: by how much the levels of the objects that share it are coarsened.
+// State of a triangle budget: how much the budget coarsens the levels of detail of its objects.
 struct BudgetState {
-    // Factors of the metric by rank, 1 or more, and from `NO_RANK` on 1.
+    // Factor per rank that multiplies the metric of levels, 1 or more. Elements from `NO_RANK` on are 1.
     factors: array<vec4<f32>, 3>,
-    // 1 if all fades end in this frame, because both levels of each would not fit.
+    // 1 if all fades end in this frame, because the budget cannot hold both levels of every fade; else 0.
     ends_fades: u32,
-    // 1 if even the coarsest levels do not fit.
+    // 1 if even the coarsest levels exceed the budget, else 0.
     is_missed: u32,
-    // Number of triangles that are drawn, in units of the budget, both levels of a fade included.
+    // Number of triangles drawn, in units of the budget. An instance that fades counts with both levels.
     triangles: u32,
-    // How far the objects are coarsened, in steps of the histogram: rank by rank, and within a rank by the logarithm of the
-    // factor.
+    // Degree of coarsening: an index of parts in the budget's histogram. Ranks follow one another. Within a rank, the index is
+    // proportional to the logarithm of the factor.
     pressure: u32,
 }

@@ -1,56 +1,60 @@
-// Criteria of an instance's level: a metric of the instance in a camera, which grows with the level. The coarsest level whose
-// threshold is at most the metric is drawn. `src/lod/criterion.rs` is the reference.
+// Criteria for the level of detail of an instance. A criterion yields a metric of the instance in a camera; larger metrics give
+// coarser levels. The level drawn is the coarsest one whose threshold is at most the metric. `src/lod/criterion.rs` is the
+// reference.
 import package::wgsl::lod::instance::{Axes, SceneInstance};
 import package::wgsl::lod::object::{LodObject, object_flags_criterion};
 import package::wgsl::lod::view::LodCamera;
 
-// Criteria in the flags word of an object. The metric is a displacement that the camera allows, in model units;
+// Criterion: the metric is the displacement that the camera allows, in model units. The CRITERION constants are values of the
+// criterion in an object's flags word.
 const CRITERION_ERROR = 0u;
-// a distance from the eye, in world units: to the middle of the bounding sphere,
+// Criterion: the metric is the distance from the eye to the middle of the bounding sphere, in world units.
 const CRITERION_DISTANCE = 1u;
-// to a point of the model,
+// Criterion: the metric is the distance from the eye to a chosen point of the model, in world units.
 const CRITERION_POINT = 2u;
-// or to the nearest point of the model's box;
+// Criterion: the metric is the distance from the eye to the nearest point of the model's box, in world units.
 const CRITERION_NEAREST = 3u;
-// the square root of the viewport's area per projected area: of the model's box,
+// Criterion: the metric is the square root of the viewport's area per projected area of the model's box.
 const CRITERION_BOX = 4u;
-// or of the bounding sphere;
+// Criterion: the metric is the square root of the viewport's area per projected area of the bounding sphere.
 const CRITERION_SPHERE = 5u;
-// or world units per pixel, at the middle of the bounding sphere (B equation 3.3).
+// Criterion: the metric is the number of world units per pixel at the middle of the bounding sphere (B equation 3.3).
 const CRITERION_MAGNIFICATION = 6u;
 
-// Upper bound of all metrics.
+// Upper bound of the metric, for every criterion.
 const MAX_METRIC: f32 = 3e38;
 
-// An instance's place in a view, relative to the corner of the view's cell.
+// Transform and bounding sphere of an instance, relative to the corner of the view's cell.
 struct Placed {
+    // Columns of the linear part of the transform.
     axes: Axes,
-    // Position of the model's origin.
+    // Position of the model's origin, in world units.
     at: vec3<f32>,
-    // The bounding sphere.
+    // Center of the bounding sphere, in world units.
     center: vec3<f32>,
+    // Radius of the bounding sphere, in world units.
     radius: f32,
 }
 
-// A point of the model.
+// Position of a point of the model relative to the corner of the view's cell. `point` is in model space.
 fn placed_point(placed: Placed, point: vec3<f32>) -> vec3<f32> {
     return placed.axes.x * point.x + placed.axes.y * point.y + placed.axes.z * point.z + placed.at;
 }
 
-// Distance from a point to the nearest point of the model's box.
+// Distance from the eye to the nearest point of the model's box, in world units.
 fn distance_to_box(object: LodObject, placed: Placed, eye: vec3<f32>) -> f32 {
     let towards = eye - placed_point(placed, object.point);
     var nearest = vec3<f32>(0.0);
     for (var axis = 0u; axis < 3u; axis++) {
         let along = axis_of(placed.axes, axis);
-        // Coordinate in the model; an axis of length 0 contributes nothing.
+        // Coordinate in model space. An axis of length 0 contributes nothing.
         let coordinate = dot(along, towards) / max(dot(along, along), 1e-30);
         nearest += along * clamp(coordinate, -object.half_size[axis], object.half_size[axis]);
     }
     return length(towards - nearest);
 }
 
-// A column of the model's linear transform.
+// Column `axis`, 0 to 2, of the model's linear transform.
 fn axis_of(axes: Axes, axis: u32) -> vec3<f32> {
     if axis == 0u {
         return axes.x;
@@ -58,7 +62,7 @@ fn axis_of(axes: Axes, axis: u32) -> vec3<f32> {
     return select(axes.y, axes.z, axis == 2u);
 }
 
-// Area on the screen, in pixels, of the model's box: the sum over the three faces that the eye may see.
+// Area of the model's box on screen, in pixels: the sum over its visible faces, at most three.
 fn box_area(object: LodObject, placed: Placed, camera: LodCamera) -> f32 {
     let middle = placed_point(placed, object.point);
     var area = 0.0;
@@ -68,7 +72,8 @@ fn box_area(object: LodObject, placed: Placed, camera: LodCamera) -> f32 {
         let two = (axis + 2u) % 3u;
         let across = object.half_size[one] * axis_of(placed.axes, one);
         let along = object.half_size[two] * axis_of(placed.axes, two);
-        // Of the two faces, the one that is turned towards the eye; none if the eye lies between their planes.
+        // Of two opposite faces, only the face turned towards the eye counts. If the eye lies between their planes, no face
+        // counts.
         let normal = cross(across, along);
         var offset = dot(normal, camera.eye - middle);
         if camera.perspective == 0.0 {
@@ -83,7 +88,7 @@ fn box_area(object: LodObject, placed: Placed, camera: LodCamera) -> f32 {
     return area;
 }
 
-// Area on the screen of the parallelogram with the corners `middle` ± `across` ± `along`.
+// Area on screen, in pixels, of the parallelogram with the corners `middle` ± `across` ± `along`.
 fn face_area(camera: LodCamera, middle: vec3<f32>, across: vec3<f32>, along: vec3<f32>) -> f32 {
     let a = on_screen(camera, middle - across - along);
     let b = on_screen(camera, middle + across - along);
@@ -93,7 +98,8 @@ fn face_area(camera: LodCamera, middle: vec3<f32>, across: vec3<f32>, along: vec
     return 0.5 * length(cross(c - a, d - b));
 }
 
-// A point on the plane at distance 1, in pixels; points behind the near plane count as if they were in it.
+// Projection of a point onto the plane at distance 1 from the eye, in pixels. Points nearer than the near plane are projected
+// with the near plane's depth.
 fn on_screen(camera: LodCamera, point: vec3<f32>) -> vec3<f32> {
     let towards = point - camera.eye;
     if camera.perspective == 0.0 {
@@ -103,7 +109,7 @@ fn on_screen(camera: LodCamera, point: vec3<f32>) -> vec3<f32> {
     return camera.focal * (towards - depth * camera.ahead) / max(depth, max(camera.near, 1e-9));
 }
 
-// Depth of the middle of the bounding sphere, at least that of the near plane; 1 in a parallel view.
+// Depth of the middle of the bounding sphere in world units, at least the near plane's distance. In a parallel view it is 1.
 fn depth_of(camera: LodCamera, center: vec3<f32>) -> f32 {
     if camera.perspective == 0.0 {
         return 1.0;
@@ -111,8 +117,8 @@ fn depth_of(camera: LodCamera, center: vec3<f32>) -> f32 {
     return max(dot(camera.ahead, center - camera.eye), max(camera.near, 1e-9));
 }
 
-// Metric of an instance in a camera. `allowed` is the displacement that the camera allows, in model units. A parallel view's
-// own camera has no eye: distances in it are 0.
+// Metric of an instance in a camera, by the object's criterion. `allowed` is the displacement that the camera allows, in model
+// units. A parallel view has no eye, so all distances in it are 0.
 fn criterion_metric(object: LodObject, camera: LodCamera, placed: Placed, allowed: f32) -> f32 {
     switch object_flags_criterion(object.flags) {
         case CRITERION_DISTANCE: {
@@ -140,7 +146,7 @@ fn criterion_metric(object: LodObject, camera: LodCamera, placed: Placed, allowe
     }
 }
 
-// The metric of an area on the screen, in pixels.
+// Metric of an area on screen: the square root of the viewport's area divided by `area`, both in pixels.
 fn metric_of_area(camera: LodCamera, area: f32) -> f32 {
     return min(sqrt(camera.pixel_count / max(area, 1e-30)), MAX_METRIC);
 }

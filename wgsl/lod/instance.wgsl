@@ -1,48 +1,53 @@
-// Instances as a scene keeps them on the device.
+// Instances as a scene stores them on the device.
 
-// The edge of a cell in world units. A position is a whole number of cells and an offset, so that it stays precise far
-// from the origin.
+// Edge length of a cell, in world units. A position consists of a cell index and an offset, so that it stays precise far from
+// the origin.
 const CELL_SIZE: f32 = 256.0;
 
-// The instance exists.
+// Instance flag: the instance exists.
 const INSTANCE_ALIVE = 1u;
-// The instance casts shadows.
+// Instance flag: the instance casts shadows.
 const INSTANCE_CASTS = 2u;
-// The instance is a character that carries a mesh: its bones are sampled in every frame in which a view sees it.
+// Instance flag: the instance is a character with an attached mesh. Its bones are sampled in every frame in which a view sees
+// the character.
 const INSTANCE_CARRIES = 4u;
-// The instance is a mesh that is attached to a bone: it has a placement only as rows in a view.
+// Instance flag: the instance is a mesh that is attached to a bone. Its placement exists only as rows in a view.
 const INSTANCE_FOLLOWS = 8u;
-// `SceneInstance.flags`: the bits above, and the visibility mask.
+// Word of `SceneInstance.flags`: the instance flags, and the visibility mask.
 // packed InstanceFlags: bits 16, mask 16
 
-// An instance of an object.
+// An instance of an object: its placement, flags and tint.
 struct SceneInstance {
-    // The cell that holds its position.
+    // Cell that contains the instance's position.
     cell: vec3<i32>,
-    // `INSTANCE_ALIVE`, `INSTANCE_CASTS`, `INSTANCE_CARRIES`, `INSTANCE_FOLLOWS`, and in the upper 16 bits its visibility mask.
+    // Instance flags (`INSTANCE_ALIVE`, `INSTANCE_CASTS`, `INSTANCE_CARRIES`, `INSTANCE_FOLLOWS`) in the lower 16 bits. The
+    // upper 16 bits are the visibility mask.
     flags: u32,
-    // Its position in the cell, in world units.
+    // Position of the instance relative to the cell's corner, in world units.
     offset: vec3<f32>,
-    // User data: a word that the caller's shading reads.
+    // User data: a word that the caller's shading function reads.
     user_data: u32,
-    // A unit quaternion.
+    // Rotation: a unit quaternion (x, y, z, w).
     rotation: vec4<f32>,
-    // Scale factors along the model's axes, applied before the rotation; negative ones mirror.
+    // Scale factors along the model's axes, applied before the rotation. Negative factors mirror.
     scale: vec3<f32>,
-    // Tint that multiplies its colours: red, green, blue and alpha, 8 bits each, red in the lowest.
+    // Tint that multiplies the instance's colours: red, green, blue and alpha, 8 bits each, red in the lowest byte.
     tint: u32,
-    // A sphere around everything that it may draw, in the model's space: center and radius.
+    // Sphere around everything that the instance may draw, in model space: center (xyz) and radius (w).
     bounding_sphere: vec4<f32>,
 }
 
-// The columns of the model's linear transform into the world.
+// Linear part of a transform from model to world space, as columns.
 struct Axes {
+    // Image of the model's x axis.
     x: vec3<f32>,
+    // Image of the model's y axis.
     y: vec3<f32>,
+    // Image of the model's z axis.
     z: vec3<f32>,
 }
 
-// Linear part of an instance's transform: the scale, then the rotation.
+// Linear part of an instance's transform: first the scale, then the rotation.
 fn instance_axes(instance: SceneInstance) -> Axes {
     let q = instance.rotation;
     let s = instance.scale;
@@ -52,7 +57,7 @@ fn instance_axes(instance: SceneInstance) -> Axes {
     return Axes(s.x * x, s.y * y, s.z * z);
 }
 
-// The position of an instance relative to the corner of another cell.
+// Position of an instance relative to the corner of `cell`, in world units.
 fn instance_position(instance: SceneInstance, cell: vec3<i32>) -> vec3<f32> {
     return vec3<f32>(instance.cell - cell) * CELL_SIZE + instance.offset;
 }

@@ -1,104 +1,122 @@
 // Objects of a scene. All instances of one model share an object.
+//
+// Flags word of an object. `shown`: the object is visible. `never_culled`: its instances are drawn outside the view volume too.
+// `timed`: its transition runs in time. `transition` is a constant of `wgsl/lod/transition.wgsl`, `criterion` a constant of
+// `wgsl/lod/criterion.wgsl`.
+// packed ObjectFlags: shown 1, never_culled 1, timed 1, transition 4, criterion 4
+// Metric word of an instance in a view: the bits of its metric without the sign bit, and whether its placement mirrors.
+// `UNSEEN_METRIC` means that the view does not see the instance.
+// packed Metric: bits 31, mirrored 1
+// Decision word of an instance in a view: its level, the level to which it changes (`next`), and the steps of the change. A
+// geomorph takes up to `MORPH_STEPS` steps, a fade up to `FADE_PROGRESS`; 0 steps mean no change. The word is 0 if the instance
+// is not visible.
+// packed Decision: seen 1, mirrored 1, level 3, next 3, steps 16
+// Entry of a list: the instance's index in its object, its level, and its steps. The steps are the progress of a geomorph, or a
+// fade word.
+// packed ListEntry: instance 20, level 3, steps 9
+// Fade word: the weight of the instance, up to `FADE_STEPS`. If `rest` is 1, the instance covers the pixels that this weight
+// leaves uncovered.
+// packed Fade: weight 7, rest 1
 
-// The largest number of levels of detail of an object, the finest included.
+// Largest number of levels of detail of an object, the finest included.
 const OBJECT_LEVELS = 8u;
-// The largest number of lists of an object in a view: per level, one of instances that are not mirrored and one of mirrored
-// instances, and the same again for instances that fade (`fading_list`).
+// Largest number of lists of an object in a view. Each level has four lists: unmirrored and mirrored instances, and both again
+// for instances that fade (`fading_list`).
 const OBJECT_LISTS = 32u;
-// Number of instances in a block. Each object takes whole blocks.
+// Number of instances in a block. The instances of each object occupy whole blocks.
 const BLOCK = 64u;
 // Object index of a block that belongs to no object.
 const NO_OBJECT = 0xffffffffu;
 
-// Flags of an object: whether it is visible as a whole; whether its instances are drawn outside the view volume too; whether
-// its transition runs in time; its transition (`wgsl/lod/transition.wgsl`); its criterion (`wgsl/lod/criterion.wgsl`).
-// packed ObjectFlags: shown 1, never_culled 1, timed 1, transition 4, criterion 4
-// Metric word of an instance in a view: its metric without the sign bit, and whether its placement mirrors. `UNSEEN_METRIC`:
-// not visible.
-// packed Metric: bits 31, mirrored 1
-// A view's decision for a visible instance: its level, the level that it changes to, and the steps of the change. A geomorph
-// takes up to `MORPH_STEPS`, a fade up to `FADE_PROGRESS`; 0: no change. The word is 0 if the instance is not visible.
-// packed Decision: seen 1, mirrored 1, level 3, next 3, steps 16
-// An entry of a list: the instance's index, counted from the object's first one, its level, and its steps: those of a geomorph,
-// or a fade word.
-// packed ListEntry: instance 20, level 3, steps 9
-// Fade word: the weight of the instance, up to `FADE_STEPS`, and whether it covers the pixels that this weight leaves.
-// packed Fade: weight 7, rest 1
-// Number of steps from one level to the next, of a geomorph.
+// Number of steps of a geomorph from one level to the next.
 const MORPH_STEPS = 511u;
-// Number of steps of a fade's weight, in a list entry.
+// Number of steps of a fade's weight in a list entry.
 const FADE_STEPS = 127u;
-// Number of steps of a fade, in a decision.
+// Number of steps of a fade in a decision word.
 const FADE_PROGRESS = 65535u;
 
-// Number of ranks.
+// Number of ranks, the importance classes of a triangle budget.
 const RANKS = 8u;
-// Rank of an object that the budget spares.
+// Rank of an object that a triangle budget never coarsens.
 const NO_RANK = 8u;
 
 // Metric word of an instance that the view does not see.
 const UNSEEN_METRIC = 0xffffffffu;
 
-// How the instances of an object are selected and listed.
+// Level-of-detail settings of an object, and the location of its instances, lists and draws.
 struct LodObject {
-    // Index of its first instance, and number of its instances. Both are multiples of `BLOCK`.
+    // Index of the object's first instance in the scene, a multiple of `BLOCK`.
     first: u32,
+    // Number of instances of the object, a multiple of `BLOCK`.
     instances: u32,
-    // Number of levels, 1 to `OBJECT_LEVELS`.
+    // Number of levels of detail, 1 to `OBJECT_LEVELS`.
     levels: u32,
-    // Index of the word at which its first list begins in the lists of a view. Each list takes `instances` words.
+    // Index of the word at which the object's first list begins in a view's lists. Each list takes `instances` words.
     first_list: u32,
-    // Index of its first draw in the draws of a view, and its number of parts. Each part has `OBJECT_LISTS` draws.
+    // Index of the object's first draw in a view's draws. Each part of the object has `OBJECT_LISTS` draws.
     first_draw: u32,
+    // Number of parts of the object, each with draws of its own.
     parts: u32,
-    // Factor of its metric, above 0: the LOD bias and, for errors, the fraction of the allowed displacement that levels may use.
+    // Factor of the metric, above 0: the LOD bias. For errors, it also contains the fraction of the allowed displacement that
+    // levels may use.
     metric_scale: f32,
-    // Flags word.
+    // Flags word of the object, see `object_flags_word`.
     flags: u32,
-    // Threshold per level, ascending: the smallest metric at which the level is drawn. The first is 0. With a geomorph, it is
-    // the metric at which the level begins to move towards the next one, and except for level 0, the level is drawn from there
-    // on.
+    // Threshold per level, ascending: the smallest metric at which the level is drawn. Without a geomorph, the first threshold
+    // is 0. With a geomorph, a level begins to move towards the next one at its threshold, so the first threshold is above 0.
     thresholds: array<vec4<f32>, 2>,
-    // Factors of the thresholds: of the levels up to the last frame's level, and of coarser ones. Between the two an instance
-    // keeps its level (hysteresis), or fades from one level to the next.
+    // Factor of the thresholds of levels up to the last frame's level. Between the thresholds scaled by `finer` and by
+    // `coarser`, an instance keeps its level (hysteresis), or fades from one level to the next.
     finer: f32,
+    // Factor of the thresholds of levels that are coarser than the last frame's level.
     coarser: f32,
-    // Steps per second of a fade that runs in time.
+    // Steps per second of a fade that runs in time; a whole fade has `FADE_PROGRESS` steps.
     rate: f32,
-    // Strength of the perceptual factors of the metric: of motion in the picture, and of the distance from the picture's middle.
+    // Growth of the metric with an instance's speed on screen, per picture height per second; 0 for none.
     motion: f32,
-    // Middle of its box, or the point that distances are measured to, in model space.
+    // Middle of the model's box, or the point to which distances are measured, in model space.
     point: vec3<f32>,
+    // Growth of the metric with an instance's distance from the picture's middle, per half picture height; 0 for none.
     periphery: f32,
-    // Half the size of its box along the model's axes.
+    // Half the size of the model's box along the model's axes.
     half_size: vec3<f32>,
-    // Its rank among the objects that share a budget: 0 for the least important ones; `NO_RANK` if the budget spares it.
+    // Rank of the object in a triangle budget: objects of rank 0 are coarsened first. `NO_RANK` if the budget spares the
+    // object.
     rank: u32,
-    // Metrics between which its instances fade out, with `TRANSITION_ALPHA`.
+    // Metric at which instances begin to fade out, with `TRANSITION_ALPHA`.
     fade_begin: f32,
+    // Metric at which instances have faded out, with `TRANSITION_ALPHA`.
     fade_end: f32,
-    // Added to the metric in proportion to a budget's factor, so that the largest factor reaches every level, even from 0.
+    // Added to the metric, times a budget's factor minus 1. With this term, the largest factor reaches every level even from a
+    // metric of 0.
     metric_floor: f32,
+    // Padding, not read.
     unused: u32,
-    // Number of triangles per level, in units of the budget.
+    // Number of triangles per level, in units of the triangle budget.
     triangles: array<vec4<u32>, 2>,
 }
 
-// The index of the list of visible instances at a level.
+// Index of the list of visible instances that are drawn at a level without a fade. `mirrored` is 1 for mirrored instances,
+// else 0.
 fn solid_list(level: u32, mirrored: u32) -> u32 {
     return 2u * level + mirrored;
 }
 
-// The index of the list of visible instances at a level that fade in or out.
+// Index of the list of visible instances that fade in or out at a level. `mirrored` is 1 for mirrored instances, else 0.
 fn fading_list(object: LodObject, level: u32, mirrored: u32) -> u32 {
     return 2u * (object.levels + level) + mirrored;
 }
 
 // The arguments of an indexed indirect draw.
 struct SceneDraw {
+    // Number of indices to draw.
     index_count: u32,
+    // Number of instances to draw.
     instance_count: u32,
+    // Index in the index buffer of the first index to draw.
     first_index: u32,
+    // Number that is added to each index.
     base_vertex: u32,
+    // Number of the first instance.
     first_instance: u32,
 }

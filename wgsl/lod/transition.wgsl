@@ -1,28 +1,29 @@
-// Transitions between the levels of an object: from the metric of an instance to the decision of a view, and from the decision
-// to list entries. `src/lod/transition.rs` is the reference.
+// Transitions between the levels of an object: from an instance's metric to a view's decision, and from the decision to list
+// entries. `src/lod/transition.rs` is the reference.
 import package::wgsl::lod::object::{FADE_PROGRESS, FADE_STEPS, LodObject, MORPH_STEPS, OBJECT_LEVELS, decision_level, decision_mirrored, decision_next, decision_seen, decision_steps, decision_word, fade_word, fading_list, list_entry_word, object_flags_timed, object_flags_transition, solid_list};
 
-// Transitions in the flags word of an object. At once;
+// Transition: levels change at once. The TRANSITION constants are values of the transition in an object's flags word.
 const TRANSITION_HARD = 0u;
-// vertices move to their partners in the next coarser level;
+// Transition: vertices move to their partners in the next coarser level.
 const TRANSITION_GEOMORPH = 1u;
-// both levels, each in its own pixels of a pattern;
+// Transition: both levels are drawn, each in its own pixels of a pattern.
 const TRANSITION_DITHER = 2u;
-// both levels blended (A section 7.3.1);
+// Transition: both levels are blended (A section 7.3.1).
 const TRANSITION_CROSS_FADE = 3u;
-// the level opaque, and the next one blended over it (A section 7.3.2);
+// Transition: the current level is opaque, and the next level is blended over it (A section 7.3.2).
 const TRANSITION_FADE_IN = 4u;
-// the level opaque while the next one fades in, then the next one opaque while the level fades out (A section 7.3.3);
+// Transition in two phases (A section 7.3.3). First the next level fades in over the opaque current level. Then the next level
+// is opaque while the current level fades out.
 const TRANSITION_TWO_PHASE = 5u;
-// levels change at once, and instances fade out between two metrics (A section 7.4).
+// Transition: levels change at once, and instances fade out between two metrics (A section 7.4).
 const TRANSITION_ALPHA = 6u;
 
-// No level of the last frame.
+// Level of an instance that had no level in the last frame.
 const NO_LEVEL = 0xffffffffu;
-// No list.
+// List index of an entry that does not exist.
 const NO_LIST = 0xffffffffu;
 
-// Smallest metric at which a level is drawn, for an instance whose level in the last frame was `last`, or `NO_LEVEL`.
+// Smallest metric at which a level is drawn. `last` is the instance's level in the last frame, or `NO_LEVEL`.
 fn threshold_of(object: LodObject, level: u32, last: u32) -> f32 {
     let threshold = object.thresholds[level >> 2u][level & 3u];
     if last == NO_LEVEL {
@@ -31,7 +32,7 @@ fn threshold_of(object: LodObject, level: u32, last: u32) -> f32 {
     return threshold * select(object.coarser, object.finer, level <= last);
 }
 
-// The coarsest level whose threshold is at most `metric`.
+// Coarsest level whose threshold is at most `metric`. `last` is the instance's level in the last frame, or `NO_LEVEL`.
 fn level_within(object: LodObject, metric: f32, last: u32) -> u32 {
     var level = 0u;
     for (var coarser = 1u; coarser < min(object.levels, OBJECT_LEVELS); coarser++) {
@@ -42,12 +43,13 @@ fn level_within(object: LodObject, metric: f32, last: u32) -> u32 {
     return level;
 }
 
-// Steps of `most` that a metric has gone from one number to another. `end` is above `begin`.
+// Progress of a metric from `begin` to `end`, in steps from 0 to `most`. `end` must be above `begin`.
 fn steps_between(metric: f32, begin: f32, end: f32, most: u32) -> u32 {
     return u32(f32(most) * clamp((metric - begin) / (end - begin), 0.0, 1.0) + 0.5);
 }
 
-// The level of an instance in the last frame, or `NO_LEVEL`. A fade in time counts as the level that it leads to.
+// Level of an instance in the last frame, or `NO_LEVEL`. `last` is the decision word of that frame. A fade in time counts as
+// the level to which it leads.
 fn last_level(object: LodObject, last: u32) -> u32 {
     if decision_seen(last) == 0u {
         return NO_LEVEL;
@@ -55,12 +57,12 @@ fn last_level(object: LodObject, last: u32) -> u32 {
     return select(decision_level(last), decision_next(last), decision_steps(last) > 0u && object_flags_timed(object.flags) != 0u);
 }
 
-// The decision for a level that does not change.
+// Decision word for a level that does not change.
 fn settled(level: u32, mirrored: u32) -> u32 {
     return decision_word(1u, mirrored, level, level, 0u);
 }
 
-// A geomorph: the steps towards the next coarser level.
+// Decision word with a geomorph: the level, and the steps towards the next coarser level.
 fn morphing(object: LodObject, metric: f32, mirrored: u32) -> u32 {
     let level = level_within(object, metric, NO_LEVEL);
     if level + 1u >= min(object.levels, OBJECT_LEVELS) {
@@ -71,9 +73,9 @@ fn morphing(object: LodObject, metric: f32, mirrored: u32) -> u32 {
     return decision_word(1u, mirrored, level, level, steps);
 }
 
-// A fade from a level to the next coarser one while the metric passes the band around the threshold.
+// Decision word for a fade to the next coarser level while the metric passes the band around the threshold.
 fn fading_in_band(object: LodObject, metric: f32, mirrored: u32) -> u32 {
-    // The coarsest level whose band is passed: as if the last level were the finest.
+    // The coarsest level whose band the metric has passed. The finest level as the last level selects the bands' upper ends.
     let level = level_within(object, metric, 0u);
     if level + 1u >= min(object.levels, OBJECT_LEVELS) {
         return settled(level, mirrored);
@@ -87,8 +89,8 @@ fn fading_in_band(object: LodObject, metric: f32, mirrored: u32) -> u32 {
     return decision_word(1u, mirrored, level, select(level, next, steps > 0u), steps);
 }
 
-// A fade that runs in time, from the decision of the last frame to the level of this one. It turns back if the level that it
-// left is right again; any other level waits until it has ended.
+// Decision word for a fade that runs in time. `last` is the decision word of the last frame, `level` the level for this frame.
+// If `level` is the level that the fade left, the fade turns back. Any other new level waits until the fade has ended.
 fn fading_in_time(object: LodObject, level: u32, mirrored: u32, last: u32, seconds: f32) -> u32 {
     if decision_seen(last) == 0u {
         return settled(level, mirrored);
@@ -113,12 +115,13 @@ fn fading_in_time(object: LodObject, level: u32, mirrored: u32, last: u32, secon
     return decision_word(1u, mirrored, left, to, steps);
 }
 
-// The metric that a budget's factor, 1 or more, makes of a metric.
+// Metric after a budget's factor, 1 or more, has been applied.
 fn coarsened(object: LodObject, metric: f32, factor: f32) -> f32 {
     return factor * metric + (factor - 1.0) * object.metric_floor;
 }
 
-// The level of the last frame that hysteresis holds, or `NO_LEVEL`: fades in a band and geomorphs depend on this frame alone.
+// Level of the last frame that hysteresis holds. It is `NO_LEVEL` for geomorphs and for fades in a band, which depend on this
+// frame alone.
 fn held_level(object: LodObject, last: u32) -> u32 {
     let transition = object_flags_transition(object.flags);
     let is_fading = transition >= TRANSITION_DITHER && transition <= TRANSITION_TWO_PHASE;
@@ -126,14 +129,14 @@ fn held_level(object: LodObject, last: u32) -> u32 {
     return select(last_level(object, last), NO_LEVEL, is_momentary);
 }
 
-// Whether an instance has faded out (`TRANSITION_ALPHA`).
+// Whether an instance has faded out completely (`TRANSITION_ALPHA`).
 fn is_faded_out(object: LodObject, metric: f32) -> bool {
     return object_flags_transition(object.flags) == TRANSITION_ALPHA
         && steps_between(metric, object.fade_begin, object.fade_end, FADE_PROGRESS) == FADE_PROGRESS;
 }
 
-// The decision for a visible instance. `factor` coarsens its levels, for a budget; `last` is the view's decision in the last
-// frame, 0 if there is none; `ends` ends all fades.
+// Decision word for a visible instance. `factor` is a budget's factor, which coarsens the levels. `last` is the view's decision
+// word in the last frame, 0 if there is none. `ends` ends all fades.
 fn transition_decision(object: LodObject, metric: f32, factor: f32, mirrored: u32, last: u32, seconds: f32, ends: bool) -> u32 {
     let transition = object_flags_transition(object.flags);
     let within = coarsened(object, metric, factor);
@@ -156,20 +159,24 @@ fn transition_decision(object: LodObject, metric: f32, factor: f32, mirrored: u3
     return select(decision_word(1u, mirrored, level, level, steps), 0u, steps == FADE_PROGRESS);
 }
 
-// The finest level that a decision draws.
+// Finest level that a decision draws.
 fn decision_finest(decision: u32) -> u32 {
     return min(decision_level(decision), decision_next(decision));
 }
 
-// The lists of an instance, or `NO_LIST`, and its entries there.
+// Up to two list entries of an instance, each with the index of its list.
 struct Entries {
+    // Index of the first entry's list, or `NO_LIST`.
     first: u32,
+    // First list entry.
     first_entry: u32,
+    // Index of the second entry's list, or `NO_LIST`.
     second: u32,
+    // Second list entry.
     second_entry: u32,
 }
 
-// The list entries of a decision. `index` is the instance's index in the object.
+// List entries for a decision word. `index` is the instance's index in its object.
 fn transition_entries(object: LodObject, decision: u32, index: u32) -> Entries {
     if decision_seen(decision) == 0u {
         return Entries(NO_LIST, 0u, NO_LIST, 0u);
@@ -183,7 +190,7 @@ fn transition_entries(object: LodObject, decision: u32, index: u32) -> Entries {
     if steps == 0u {
         return Entries(solid, list_entry_word(index, level, 0u), NO_LIST, 0u);
     }
-    // The weight that the level has left, and what the next level has.
+    // Remaining weight of the current level, and weight of the next level.
     let left = left_of(steps);
     let gained = FADE_STEPS - left;
     let fading = fading_list(object, level, mirrored);
@@ -223,14 +230,16 @@ fn transition_entries(object: LodObject, decision: u32, index: u32) -> Entries {
     }
 }
 
-// The only entry of an instance that is drawn by itself, and its list.
+// Single list entry of an instance that has a draw of its own.
 struct SortedEntry {
+    // Index of the list.
     list: u32,
+    // The list entry.
     word: u32,
 }
 
-// The entry of a visible instance that is drawn by itself: it changes its level at once, at the middle of a fade, but may
-// morph, and fade out.
+// List entry of a visible instance that has a draw of its own. The instance may morph or fade out. A fade between two levels is
+// replaced by a change at its middle.
 fn sorted_entry(object: LodObject, decision: u32, index: u32) -> SortedEntry {
     let steps = decision_steps(decision);
     let transition = object_flags_transition(object.flags);
@@ -246,7 +255,7 @@ fn sorted_entry(object: LodObject, decision: u32, index: u32) -> SortedEntry {
     return SortedEntry(solid_list(level, decision_mirrored(decision)), list_entry_word(index, level, word));
 }
 
-// Weight that is left after so many steps of a fade.
+// Weight that remains to a level after `steps` steps of a fade, from `FADE_STEPS` down to 0.
 fn left_of(steps: u32) -> u32 {
     return FADE_STEPS - (steps * FADE_STEPS + FADE_PROGRESS / 2u) / FADE_PROGRESS;
 }

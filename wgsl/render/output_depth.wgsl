@@ -1,13 +1,13 @@
-// The output `depth`, for depth prepasses and shadow maps, of parts whose fragments write their own depth.
+// The output `depth` of parts whose fragments write their own depth, for depth prepasses and shadow maps.
 
 // Whether the colour pass writes the depth of the surface (true) or of the polygon (false).
 override OWN_DEPTH: bool = false;
-// Whether depth is reversed: 1 at the near plane, decreasing with distance.
+// Whether depth is reversed: 1 at the near plane, and smaller with distance.
 override REVERSED: bool = false;
 
-// A depth at or behind the depth that the colour pass writes for the same fragment. After a prepass, colour then passes a depth
-// test that accepts equal depths, although two pipelines may round differently. `slope` is the largest difference of the
-// polygon's depth between the samples of a pixel.
+// Depth for a prepass: equal to or slightly behind the depth that the colour pass writes for the same fragment. Two pipelines
+// may round differently; with this depth, colour still passes a test that accepts equal depths. `slope` is the largest
+// difference of the polygon's depth between the samples of a pixel.
 fn depth_behind(depth: f32, polygon: f32, slope: f32) -> f32 {
     if REVERSED {
         let deepest = select(min(depth, polygon - slope), depth, OWN_DEPTH);

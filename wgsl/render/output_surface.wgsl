@@ -1,16 +1,18 @@
-// The output `surface`: normal, albedo, object and instance of a surface, before lighting.
+// The output `surface`: normal and albedo of a surface before lighting, and the numbers of its object and instance.
 // output surface
 import package::wgsl::render::scene_shade::Surface;
 
+// Targets of the output `surface`.
 struct SurfaceTargets {
-    // The unit normal; w: 1.
+    // Unit normal; w is 1.
     @location(0) normal: vec4<f32>,
-    // The linear colour; w: 1.
+    // Linear colour before lighting; w is 1.
     @location(1) albedo: vec4<f32>,
-    // Object number (from 1) and instance number in the object (from 0).
+    // Number of the object, from 1 (x), and number of the instance in the object, from 0 (y).
     @location(2) id: vec2<u32>,
 }
 
+// Target values of a surface.
 fn surface_write(surface: Surface) -> SurfaceTargets {
     return SurfaceTargets(
         vec4<f32>(surface.normal, 1.0), vec4<f32>(surface.color, 1.0), vec2<u32>(surface.object, surface.instance));

@@ -1,4 +1,4 @@
-// Placements of the drawn object's instances in a view, in this frame and in the last one.
+// Placements in a view of the instances that are drawn, in this frame and in the last one.
 import package::wgsl::lod::instance::{INSTANCE_FOLLOWS, SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::object::{list_entry_instance, list_entry_level};
 import package::wgsl::render::scene_fade::{FADE, FADE_PUSHED};
@@ -7,48 +7,51 @@ import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_view::view;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 
-// Three rows per instance of the scene: the transform from model space to positions relative to the corner of the view's cell.
-// Valid for instances that the view sees. If the scene keeps its last frame, the same number of transforms of that frame
-// follows. These are valid for meshes attached to bones.
+// Per instance of the scene, three rows: the transform from model space to positions relative to the corner of the view's cell.
+// Valid for instances that the view sees. If the scene keeps its last frame, one transform per instance of that frame follows,
+// valid for meshes attached to bones.
 @group(0) @binding(1) var<storage, read> placements: array<array<vec4<f32>, 3>>;
 // All instances of the scene.
 @group(0) @binding(2) var<storage, read> instances: array<SceneInstance>;
-// All instances as they were in the last frame. If the scene does not keep its last frame: as they are.
+// All instances in the state of the last frame. If the scene does not keep its last frame, this is the current state.
 @group(0) @binding(3) var<storage, read> last_instances: array<SceneInstance>;
 
-// A chunk: the instances of an object that are drawn together.
+// A chunk: instances of an object that are drawn together.
 struct SceneObject {
-    // Index in the scene of the chunk's first instance.
+    // Index of the chunk's first instance in the scene.
     first_instance: u32,
-    // Number of the object, from 1 on.
+    // Number of the object, counted from 1.
     number: u32,
-    // Number in the object of the chunk's first instance.
+    // Number of the chunk's first instance in the object, counted from 0.
     first_slot: u32,
-    // Per level: how far `FADE_PUSHED` pushes, in units of the model.
+    // Distance per level by which the fade method `FADE_PUSHED` pushes surfaces away from the eye, in model units.
     push: array<vec4<f32>, 2>,
 }
 
+// The chunk that is drawn.
 @group(1) @binding(0) var<uniform> scene_object: SceneObject;
 
-// Matrices with a smaller determinant (absolute value) are not inverted.
+// Smallest absolute determinant of a matrix that is inverted.
 const LEAST_DETERMINANT: f32 = 1e-30;
 
-// Index in the chunk of the instance of a list entry.
+// Index in the chunk of a list entry's instance.
 fn entry_instance(entry: u32) -> u32 {
     return list_entry_instance(entry);
 }
 
-// Index in the scene of the instance of a list entry.
+// Index in the scene of a list entry's instance.
 fn instance_index(entry: u32) -> u32 {
     return scene_object.first_instance + entry_instance(entry);
 }
 
-// The transform of an instance from the model's space to positions relative to the corner of the view's cell.
+// Transform of an instance in this frame, from model space to positions relative to the corner of the view's cell. `index` is
+// the instance's index in the scene.
 fn instance_placement(index: u32) -> Rows {
     return Rows(placements[index][0], placements[index][1], placements[index][2]);
 }
 
-// The same transform in the last frame. A mesh that was detached from its bone since then gets its current placement.
+// Transform of an instance in the last frame, from model space to positions relative to the corner of this frame's cell. A mesh
+// that was attached to a bone then, but is not now, gets its current placement.
 fn last_placement(index: u32) -> Rows {
     let instance = last_instances[index];
     if (instance.flags & INSTANCE_FOLLOWS) != 0u {
@@ -63,11 +66,12 @@ fn last_placement(index: u32) -> Rows {
         vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z));
 }
 
-// Transform from an instance's current placement to its last one, for points that are static in model space.
+// Transform from positions in an instance's current placement to positions in its last placement, for points that are static in
+// model space.
 fn rows_to_last(index: u32) -> Rows {
     let now = instance_placement(index);
     let last = last_placement(index);
-    // The columns of the inverse, times the determinant.
+    // Columns of the inverse matrix, multiplied by the determinant.
     let a = cross(now.y.xyz, now.z.xyz);
     let b = cross(now.z.xyz, now.x.xyz);
     let c = cross(now.x.xyz, now.y.xyz);
@@ -86,19 +90,20 @@ fn rows_to_last(index: u32) -> Rows {
         vec4<f32>(x, moved.x - dot(x, at)), vec4<f32>(y, moved.y - dot(y, at)), vec4<f32>(z, moved.z - dot(z, at)));
 }
 
-// Position of a point in the last frame, relative to the corner of the view's cell. `position` is the point's model-space
-// position in the last frame.
+// Position of a point in the last frame, relative to the corner of the view's cell. `position` is where the point was in model
+// space in that frame.
 fn scene_last_placed(entry: u32, position: vec3<f32>) -> vec3<f32> {
     return placed_position(last_placement(instance_index(entry)), position);
 }
 
-// Position in the last frame of a point that is static in model space. Argument and result are relative to the corner of the
-// view's cell.
+// Position in the last frame of a point that is static in model space. The argument and the result are relative to the corner
+// of the view's cell.
 fn scene_last_rigid(entry: u32, position: vec3<f32>) -> vec3<f32> {
     return placed_position(rows_to_last(instance_index(entry)), position);
 }
 
-// A position of an instance's surface, pushed away from the eye as far as the instance's level and the next may lie apart.
+// Position of a surface point under the fade method `FADE_PUSHED`. The point is pushed away from the eye by the largest
+// distance between the instance's level and the next one.
 fn pushed_position(entry: u32, placement: Rows, position: vec3<f32>) -> vec3<f32> {
     if FADE != FADE_PUSHED {
         return position;
@@ -111,21 +116,22 @@ fn pushed_position(entry: u32, placement: Rows, position: vec3<f32>) -> vec3<f32
     return position + scene_object.push[level >> 2u][level & 3u] * scale * away;
 }
 
-// A model-space vertex, placed with the instance of a list entry. `tangent.w` is the sign of the bitangent in model space.
+// Vertex in the placement of a list entry's instance. The arguments are in model space; `tangent.w` is the sign of the
+// bitangent there.
 fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec4<f32>, uv: vec4<f32>) -> SceneVertex {
     let placement = instance_placement(instance_index(entry));
     let along = vec3<f32>(
         dot(placement.x.xyz, tangent.xyz), dot(placement.y.xyz, tangent.xyz), dot(placement.z.xyz, tangent.xyz));
     let determinant = dot(placement.x.xyz, cross(placement.y.xyz, placement.z.xyz));
-    // If the placement mirrors, cofactors turn the normal inwards, and the sign of the bitangent flips.
+    // If the placement mirrors, cofactors turn the normal inwards, and the bitangent changes its sign.
     let side = select(1.0, -1.0, determinant < 0.0);
     return SceneVertex(
         pushed_position(entry, placement, placed_position(placement, position)), side * placed_normal(placement, normal),
         vec4<f32>(along, side * tangent.w), uv, vec4<f32>(0.0), vec3<u32>(0u), side);
 }
 
-// Default surface of a fragment: white, opaque and lit, with the triangle's normal on the visible side. It has the tint, the
-// user data and the number of its instance. The colour does not contain the tint yet.
+// Default surface of a fragment: white, opaque and lit, with the triangle's normal on the visible side. The surface has its
+// instance's tint, user data and number. The colour does not contain the tint yet.
 fn scene_surface(in: SceneFragment) -> Surface {
     var surface = triangle_surface(in);
     let side = select(-1.0, 1.0, in.is_outside);

@@ -8,56 +8,58 @@ import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_vertex::{material_of, placed_vertex};
 import package::wgsl::surface::dither::surface_dither_threshold;
 
-// Whether the mesh is seen from both sides; back faces reverse their normals.
+// Whether the mesh is seen from both sides. Back faces then reverse their normals.
 override DOUBLE_SIDED: bool = false;
-// Whether one of the part's materials has a texture, and whether one has a normal map.
+// Whether one of the part's materials has a texture.
 override TEXTURED: bool = false;
+// Whether one of the part's materials has a normal map.
 override NORMAL_MAPPED: bool = false;
 
-// The cutoff of materials that ignore alpha.
+// Alpha cutoff of materials that ignore alpha.
 const CUTOFF_OPAQUE: f32 = -1.0;
-// The cutoff of dithered materials: alpha decides the fraction of pixels that are drawn.
+// Alpha cutoff that marks dithered materials. Their alpha is the fraction of pixels that are drawn.
 const CUTOFF_DITHERED: f32 = -2.0;
-// The layer of materials that lack a texture.
+// Texture layer of materials that have no texture.
 const NO_LAYER: u32 = 4294967295u;
 
-// A material in the table of its part.
+// A material in the material table of a part, a piece of the mesh with draws of its own.
 struct SceneMaterial {
-    // Linear RGB and alpha. They multiply the texture.
+    // Linear RGB and alpha, which multiply the texture.
     color: vec4<f32>,
-    // Alpha cutoff: pixels with a lower alpha are discarded. Or one of the constants above.
+    // Alpha cutoff: pixels with a lower alpha are discarded. `CUTOFF_OPAQUE` and `CUTOFF_DITHERED` are special values.
     cutoff: f32,
-    // Array layer of the texture, or `NO_LAYER`.
+    // Array layer of the material's texture, or `NO_LAYER`.
     layer: u32,
-    // Array layer of the normal map, or `NO_LAYER`.
+    // Array layer of the material's normal map, or `NO_LAYER`.
     normal_layer: u32,
-    // Scale of the normal map's x and y.
+    // Factor of the normal map's x and y components.
     normal_scale: f32,
 }
 
-// The materials of the part.
+// Materials of the part that is drawn.
 @group(2) @binding(0) var<storage, read> materials: array<SceneMaterial>;
-// Colour and alpha, one layer per texture.
+// Textures with colour and alpha, one per layer.
 @group(2) @binding(1) var albedo: texture_2d_array<f32>;
-// Normal maps, one per layer. The green channel points up the image, against v.
+// Normal maps, one per layer. Their green channel points up the image, against v.
 @group(2) @binding(2) var normals: texture_2d_array<f32>;
-// Filters colours.
+// Sampler of the colour textures.
 @group(2) @binding(3) var filtering: sampler;
-// Filters normal maps.
+// Sampler of the normal maps.
 @group(2) @binding(4) var normal_filtering: sampler;
 
-// Word 0 of a vertex is the index of its material.
+// Places a vertex of the mesh. Word 0 of the result is the index of the vertex's material.
 fn mesh_place(entry: u32, vertex: u32) -> SceneVertex {
     var placed = placed_vertex(entry, vertex);
     placed.words.x = material_of[vertex];
     return placed;
 }
 
+// Position of a vertex in the last frame, relative to the corner of the view's cell.
 fn mesh_last_position(entry: u32, vertex: u32) -> vec3<f32> {
     return last_position(entry, vertex);
 }
 
-// The outward normal, flipped on back faces of double-sided meshes.
+// The outward normal, reversed on back faces of double-sided meshes.
 fn facing(outwards: vec3<f32>, in: SceneFragment) -> vec3<f32> {
     if DOUBLE_SIDED {
         return select(-outwards, outwards, in.is_outside);
@@ -65,7 +67,7 @@ fn facing(outwards: vec3<f32>, in: SceneFragment) -> vec3<f32> {
     return outwards;
 }
 
-// The outward unit normal, from the normal map if the material has one.
+// Outward unit normal of a fragment, from the normal map if the material has one.
 fn bumpy_normal(in: SceneFragment, material: SceneMaterial, normal: vec3<f32>) -> vec3<f32> {
     let is_plain = material.normal_layer == NO_LAYER;
     let texel = textureSample(normals, normal_filtering, in.uv.xy, select(material.normal_layer, 0u, is_plain));
@@ -76,6 +78,7 @@ fn bumpy_normal(in: SceneFragment, material: SceneMaterial, normal: vec3<f32>) -
     return select(bumpy, normal, is_plain);
 }
 
+// Surface of a fragment, with its material, texture and normal map.
 fn mesh_surface(in: SceneFragment) -> Surface {
     let material = materials[in.words.x];
     var surface = scene_surface(in);

@@ -4,24 +4,27 @@ import package::wgsl::render::scene_instances::{entry_instance, instance_index, 
 import package::wgsl::render::scene_vertex::{MORPHED, VertexMorph, material_of, mesh, morphed, partner_index, partner_level, vertex_index_of, vertex_morph, vertices, way_of};
 import package::wgsl::skinning::vertex::vertex_position;
 
-// Per instance of the scene: the view's decision word in the last frame; 0 if the view did not see the instance then.
+// Per instance of the scene: the view's decision word in the last frame. It is 0 if the view did not see the instance then.
 @group(0) @binding(6) var<storage, read> last_decisions: array<u32>;
 
-// Model-space position of an instance's vertex in the last frame, before its morph.
+// Position of an instance's vertex in the last frame, in model space and without its morph.
 fn last_local(instance: u32, vertex: u32) -> vec3<f32> {
     let at = vertex_index_of(instance, vertex);
     let first = select(5u * at, mesh.last + 2u * at, mesh.last != 0u);
     return vertex_position(vertices[first], vertices[first + 1u]);
 }
 
-// Morph of a vertex in the last frame: the vertex that stood for it (`standing`), and that vertex's morph.
+// Morph of a vertex between levels in the last frame.
 struct LastMorph {
+    // Vertex that replaced this vertex in the level drawn then.
     standing: u32,
+    // Morph of the vertex `standing`.
     to: VertexMorph,
 }
 
-// With a coarser level in the last frame, a vertex was at the vertex that had replaced it. With a finer level, it had not
-// morphed. An instance that the view did not see then gets its current level.
+// Morph of a vertex in the last frame. If the level was coarser then, the vertex was at the position of the vertex that had
+// replaced it. If the level was finer, the vertex had not morphed. An instance that the view did not see then counts with its
+// current level.
 fn last_morph(entry: u32, vertex: u32) -> LastMorph {
     let decision = last_decisions[instance_index(entry)];
     if decision == 0u || mesh.partners == 0u {
@@ -40,7 +43,8 @@ fn last_morph(entry: u32, vertex: u32) -> LastMorph {
     return LastMorph(standing, VertexMorph(partner_index(word), way_of(decision_steps(decision))));
 }
 
-// Position of a vertex in the last frame, relative to the corner of the view's cell. `entry` is the list entry of its instance.
+// Position of a vertex in the last frame, relative to the corner of the view's cell. `entry` is the list entry of the vertex's
+// instance.
 fn last_position(entry: u32, vertex: u32) -> vec3<f32> {
     let instance = entry_instance(entry);
     var position = vec3<f32>(0.0);

@@ -1,27 +1,27 @@
-// The sun's shadow, from its shadow map by percentage closer filtering (Reeves, Salesin and Cook 1987). docs/shadows.md derives
-// the constants.
+// The sun's shadow, read from the sun's shadow map with percentage closer filtering (Reeves, Salesin and Cook 1987).
+// docs/shadows.md derives the constants.
 import package::wgsl::render::scene_view::view;
 
-// Whether surfaces are shadowed by the shadow map.
+// Whether the shadow map shadows surfaces.
 override SHADOWED: bool = false;
 
-// Distance along the light to the nearest caster: 0 at the sun's near plane; 1 where there is no caster.
+// Shadow map: distance along the light to the nearest caster. 0 is the sun's near plane; 1 means that there is no caster.
 @group(0) @binding(4) var shadow_map: texture_depth_2d;
-// Compares a distance with four texels, and filters the four results.
+// Comparison sampler: compares a distance with four texels, and filters the four results.
 @group(0) @binding(5) var shadow_sampler: sampler_comparison;
 
-// Bound of the filter's reach in texels, in any direction: it is below 2 along both axes, hence below 2 · √2.
+// Bound of the filter's reach in texels, in any direction. Along each axis the reach is below 2, so the bound is 2 · √2.
 const SHADOW_REACH: f32 = 2.828427;
-// Added to the sine of the angle between normal and light: triangles lean by 0.2 radians or less from the normals interpolated
-// between their vertices.
+// Addend to the sine of the angle between normal and light. It accounts for triangles that lean by up to 0.2 radians from the
+// normals interpolated between their vertices.
 const SHADOW_LEAN: f32 = 0.2;
 // Bound of the rounding error of a distance in the map, as a fraction of the distance between the sun's near and far plane.
 const SHADOW_ROUNDING: f32 = 2e-6;
-// Width of the margin where shadows fade out, as a fraction of the way from the map's middle to its edge.
+// Width of the margin in which shadows fade out, as a fraction of the distance from the map's middle to its edge.
 const SHADOW_FADE: f32 = 0.05;
 
-// Fraction of the sun's light that reaches a surface point, 0 to 1; 1 in a view without a shadow. `position` is relative to the
-// corner of the view's cell, `normal` is a unit vector.
+// Fraction of the sun's light that reaches a surface point, 0 to 1. It is 1 in a view without a shadow. `position` is relative
+// to the corner of the view's cell, and `normal` is a unit vector.
 fn scene_sunlit(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     let cosine = clamp(dot(normal, view.light.xyz), -1.0, 1.0);
     let sine = sqrt(1.0 - cosine * cosine);
@@ -34,8 +34,9 @@ fn scene_sunlit(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     return 1.0 - fade * (1.0 - shadow_filtered(uv, clamp(depth, 0.0, 1.0)));
 }
 
-// Weighted fraction of 4 × 4 texels that are no nearer to the sun than `depth`. Along each axis, the weights are 1 − s, 2 − s,
-// 1 + s and s; s is the offset from the second texel's center. Four bilinear samples cover all 16 texels (Castaño 2013).
+// Weighted fraction of 4 × 4 shadow map texels that are not nearer to the sun than `depth`. Along each axis, the weights are 1
+// − s, 2 − s, 1 + s and s, where s is the offset from the second texel's center. Four bilinear samples cover all 16 texels
+// (Castaño 2013).
 fn shadow_filtered(uv: vec2<f32>, depth: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(shadow_map));
     let place = uv * size;

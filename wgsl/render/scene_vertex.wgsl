@@ -1,39 +1,42 @@
-// Vertices of the meshes of a scene, static or skinned, at the placement of an instance.
+// Vertices of a scene's meshes, static or skinned, in the placement of an instance.
 import package::wgsl::lod::object::{MORPH_STEPS, list_entry_level, list_entry_steps};
 import package::wgsl::render::scene_instances::{entry_instance, scene_placed};
 import package::wgsl::render::scene_kind::SceneVertex;
 import package::wgsl::skinning::cluster::CLUSTER;
 import package::wgsl::skinning::vertex::{vertex_normal, vertex_position, vertex_tangent};
 
-// Whether the mesh's levels of detail geomorph.
+// Whether the mesh's levels of detail change by geomorphs.
 override MORPHED: bool = false;
 
-// Partner word of a vertex: the index of its partner, and the coarsest level of detail that contains the vertex itself.
+// Partner word of a vertex: the index of the vertex towards which it morphs, and the coarsest level of detail that contains the
+// vertex itself.
 // packed Partner: index 24, level 8
 
-// Location of a mesh's vertex data.
+// Location of a mesh's vertex data in the buffers.
 struct MeshParams {
-    // Number of clusters of the mesh if vertices lie in pages; 0 if all instances share the mesh's vertices.
+    // Number of clusters of the mesh if each instance has vertices of its own, in pages. 0 if all instances share the mesh's
+    // vertices.
     clusters: u32,
-    // The index in `vertices` of the last frame's positions, two pairs per vertex in pages; 0 if vertices do not move.
+    // Index in `vertices` of the last frame's positions, two pairs per vertex in pages. 0 if vertices do not move.
     last: u32,
-    // The index of the first partner word in `material_of`; 0 if there are no partners.
+    // Index of the first partner word in `material_of`; 0 if the mesh has no partners.
     partners: u32,
 }
 
+// Location of the mesh's vertex data.
 @group(1) @binding(5) var<uniform> mesh: MeshParams;
-// Five pairs per vertex: position, normal, tangent.
+// Vertices, five pairs of floats each: position, normal and tangent.
 @group(1) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
-// The page of each cluster of each instance of the object, if vertices lie in pages.
+// Page of each cluster of each instance of the object, if vertices lie in pages.
 @group(1) @binding(4) var<storage, read> page_table: array<u32>;
-// Two tables. From 0: per vertex of the mesh, the index of its material in the part's table. From `MeshParams.partners`: per
-// vertex, its partner word, which names the vertex that it morphs towards.
+// Two tables with one entry per vertex of the mesh. The first table, from 0, has the index of the vertex's material in the
+// part's table. The second table, from `MeshParams.partners`, has partner words.
 @group(1) @binding(3) var<storage, read> material_of: array<u32>;
-// One pair per vertex of the mesh.
+// Texture coordinates, one pair per vertex of the mesh.
 @group(1) @binding(2) var<storage, read> texture_coordinates: array<vec2<f32>>;
 
-// Index of an instance's vertex in the vertex buffer, in vertices. Arbitrary for a vertex without a page: no drawn triangle
-// uses it.
+// Index of an instance's vertex in the vertex buffer, counted in vertices. The index of a vertex without a page is arbitrary:
+// no drawn triangle uses such a vertex.
 fn vertex_index_of(instance: u32, vertex: u32) -> u32 {
     if mesh.clusters == 0u {
         return vertex;
@@ -41,13 +44,16 @@ fn vertex_index_of(instance: u32, vertex: u32) -> u32 {
     return CLUSTER * page_table[instance * mesh.clusters + vertex / CLUSTER] + vertex % CLUSTER;
 }
 
-// Morph of a vertex: the vertex that it moves towards in the next coarser level, and how far it has moved, 0 to 1.
+// Morph of a vertex towards the next coarser level.
 struct VertexMorph {
+    // Index of the vertex towards which it moves.
     partner: u32,
+    // Progress of the move, 0 to 1.
     way: f32,
 }
 
-// Vertices that exist in the next coarser level too do not move. Without a morph in the list entry, no vertex moves.
+// Morph of a vertex for a list entry. Vertices that also exist in the next coarser level do not move. No vertex moves if the
+// entry has no morph.
 fn vertex_morph(entry: u32, vertex: u32) -> VertexMorph {
     let word = material_of[mesh.partners + vertex];
     let steps = list_entry_steps(entry);
@@ -57,17 +63,17 @@ fn vertex_morph(entry: u32, vertex: u32) -> VertexMorph {
     return VertexMorph(partner_index(word), way_of(steps));
 }
 
-// Progress of a morph, 0 to 1. The last step gives exactly 1; the division may round.
+// Progress of a morph, 0 to 1, after `steps` steps. The last step gives exactly 1, although the division may round.
 fn way_of(steps: u32) -> f32 {
     return select(f32(steps) / f32(MORPH_STEPS), 1.0, steps == MORPH_STEPS);
 }
 
-// Linear interpolation, exact to the bit at 0 and 1.
+// Linear interpolation from `a` to `b`, exact to the bit where `way` is 0 or 1.
 fn morphed(a: vec3<f32>, b: vec3<f32>, way: f32) -> vec3<f32> {
     return a * (1.0 - way) + b * way;
 }
 
-// A placed vertex of the instance of a list entry. `vertex` is an index in the mesh.
+// Vertex in the placement of a list entry's instance. `vertex` is an index in the mesh.
 fn placed_vertex(entry: u32, vertex: u32) -> SceneVertex {
     let instance = entry_instance(entry);
     let at = 5u * vertex_index_of(instance, vertex);

@@ -1,11 +1,12 @@
-// Clusters: runs of vertices that are skinned together.
+// Clusters: groups of consecutive vertices that are skinned together.
 
-// Number of vertices in a cluster, and of words in a column of influences.
+// Number of vertices in a cluster. A column of influences has the same number of words, one per vertex.
 const CLUSTER: u32 = 64u;
 
-// State of a cluster in a frame, if last positions are kept. Not skinned: last positions equal the current ones.
+// Cluster state: not skinned in this frame, so its last positions equal the current ones. States exist only if last positions
+// are kept.
 const CLUSTER_STILL: u32 = 0u;
-// Skinned: last positions are those of the last frame.
+// Cluster state: skinned in this frame. Its last positions come from the last frame.
 const CLUSTER_MOVED: u32 = 1u;
-// Skinned for the first time, or again after it was invisible: last positions equal the current ones.
+// Cluster state: skinned for the first time, or again after it was invisible. Its last positions equal the current ones.
 const CLUSTER_FRESH: u32 = 2u;

@@ -1,13 +1,15 @@
-// The level of detail of one instance: its influences and its vertices.
+// Level of detail of one instance in skinning: the influences per vertex, and the mesh level.
 struct InstanceLod {
-    // Influence fade, the λ of `fade`: 0 is full quality, 1 is rigid.
+    // Fraction by which weak bone influences are faded out: 0 is full quality, 1 is rigid. This is the λ of `fade`.
     influence_fade: f32,
-    // Largest number of influences, the k of `truncate`, at least 1. 0: the instance is not visible and is not skinned.
+    // Largest number of influences per vertex, at least 1; the k of `truncate`. 0 means that the instance is invisible and is
+    // not skinned.
     max_influences: u32,
-    // The character's level of detail. Level 0 is the meshes themselves. At level n, each mesh uses the coarsest of its
-    // `Mesh::levels` whose error is at most the n-th of `level_errors`. Numbers beyond the last level count as the last.
+    // Level of detail of the character's meshes. At level 0, the meshes themselves are drawn. At level n, each mesh uses the
+    // coarsest of its `Mesh::levels` whose error is at most the n-th of `level_errors`. Numbers beyond the last level count as
+    // the last level.
     mesh_lod: u32,
 }
 
-// The largest number of levels of detail of a mesh, the mesh itself included.
+// Largest number of levels of detail of a mesh, the mesh itself included.
 const MAX_LEVELS: u32 = 16u;

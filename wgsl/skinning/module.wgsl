@@ -1,4 +1,4 @@
-// Skinning: functions for vertex shaders that draw skinned vertices at their placements, or that skin from a palette
+// Skinning functions for vertex shaders, which draw skinned vertices at their placements or skin vertices from a palette
 // themselves. `build.rs` joins this file and its imports into one text, for shaders that are not composed with WESL. Prepend
 // that text to your own code.
 import package::wgsl::affine::product_row;

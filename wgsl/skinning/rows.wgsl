@@ -1,27 +1,30 @@
-// Affine matrices as palettes and placements store them: three rows.
+// Affine matrices of palettes and placements, stored as three rows.
 
 // The first three rows of a 4 × 4 affine matrix.
 struct Rows {
+    // Row for the x coordinate.
     x: vec4<f32>,
+    // Row for the y coordinate.
     y: vec4<f32>,
+    // Row for the z coordinate.
     z: vec4<f32>,
 }
 
-// A vector whose components are all smaller than this has no direction: devices may flush smaller values to zero.
+// A vector has no direction if all its components are smaller than this. Devices may flush smaller values to zero.
 const LEAST_LENGTH: f32 = 1e-30;
 
-// The normalized vector, or `other` if it has no direction.
+// `vector` scaled to length 1, or `other` if `vector` has no direction (`LEAST_LENGTH`).
 fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
     let size = max(max(abs(vector.x), abs(vector.y)), abs(vector.z));
     let scaled = vector / max(size, LEAST_LENGTH);
     return select(scaled * inverseSqrt(max(dot(scaled, scaled), 0.5)), other, size < LEAST_LENGTH);
 }
 
-// The matrix of a bone, or of a weighted sum of bones, from a palette of dual quaternions. `real` and `dual`, the rotation and
-// the dual part, have any length but 0. The stretch is applied before them: its diagonal (x, y, z) and the elements above it
-// (xy, xz, yz).
+// Matrix of a bone, or of a weighted sum of bones, from a palette of dual quaternions. `real` is the rotation and `dual` the
+// dual part; the pair may have any length but 0. The stretch is applied first: `diagonal` has its elements xx, yy and zz,
+// `above` its elements xy, xz and yz.
 fn rows_of_dual(real: vec4<f32>, dual: vec4<f32>, diagonal: vec4<f32>, above: vec4<f32>) -> Rows {
-    // A factor of 2 over the squared length replaces normalization.
+    // The factor 2 / (squared length) replaces normalization.
     let twice = 2.0 * (1.0 / dot(real, real));
     let t = twice * (real.w * dual.xyz - dual.w * real.xyz + cross(real.xyz, dual.xyz));
     let q = real;
@@ -38,14 +41,14 @@ fn rows_of_dual(real: vec4<f32>, dual: vec4<f32>, diagonal: vec4<f32>, above: ve
         vec4<f32>(z.x * u.x, z.x * above.x + z.y * u.y, z.x * above.y + z.y * above.z + z.z * u.z, t.z));
 }
 
-// The position after a matrix is applied.
+// `position`, transformed by an affine matrix.
 fn placed_position(rows: Rows, position: vec3<f32>) -> vec3<f32> {
     let point = vec4<f32>(position, 1.0);
     return vec3<f32>(dot(rows.x, point), dot(rows.y, point), dot(rows.z, point));
 }
 
-// The normal after a matrix is applied, not normalized. It uses cofactors, which is right for uneven scales
-// too, and points inwards if the matrix mirrors.
+// `normal`, transformed by an affine matrix and not normalized. Cofactors are used, which is right for uneven scales too. The
+// result points inwards if the matrix mirrors.
 fn placed_normal(rows: Rows, normal: vec3<f32>) -> vec3<f32> {
     let x = rows.x.xyz;
     let y = rows.y.xyz;

@@ -1,15 +1,14 @@
-// The arrangement of a max-mip pyramid's nodes in one plane. Level 0 lies at the left; the other levels lie
-// below each other at its right, from a column that is a multiple of four. Every level has ⌈cells / 2^level⌉
-// nodes per axis.
+// Layout of a max-mip pyramid's nodes in one plane. Level 0 lies at the left. The other levels are stacked to its right, from a
+// column that is a multiple of four. Every level has ⌈cells / 2^level⌉ nodes per axis.
 import package::wgsl::surface::ray::SURFACE_WRAP;
 
-// Number of levels, from one node per cell up to a single node.
+// Number of levels of a pyramid, from one node per cell up to a single node.
 fn surface_levels(cells: vec2<u32>) -> u32 {
     let longest = max(cells.x, cells.y);
     return select(firstLeadingBit(longest - 1u) + 2u, 1u, longest <= 1u);
 }
 
-// The texel of a node, given its level (0 for cells) and its index at that level.
+// Texel of a node, given the node's level (0 for cells) and its index at that level.
 fn surface_atlas_at(cells: vec2<u32>, level: u32, index: vec2<i32>) -> vec2<i32> {
     if level == 0u {
         return index;

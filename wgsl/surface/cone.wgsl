@@ -1,12 +1,12 @@
-// Cone stepping over `cone_map`: each cell stores its highest corner, and a cone on that corner in which a ray
-// crosses the surface at most once. No step can therefore pass the first crossing unnoticed, and a binary
-// search finds it between the last two points (B section 2.3.3; Policarpo and Oliveira 2007, made safe under
-// bilinear filtering).
+// Cone stepping over `cone_map`. Each cell stores its highest corner, and a cone on that corner in which a ray crosses the
+// surface at most once. No step can therefore pass the first crossing unnoticed. A binary search finds the crossing between the
+// last two points (B section 2.3.3; Policarpo and Oliveira 2007, made safe under bilinear filtering).
 import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_missed, surface_point};
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
 import package::wgsl::surface::linear::surface_narrowed;
 
-// `cones` is the cone map of `heights`, computed by surface/cone_map. Uses the address and the binary steps of `march`.
+// Traces a ray by cone stepping. `cones` is the cone map of `heights`, computed by surface/cone_map. Only the address mode and
+// the number of binary steps of `march` are used.
 fn surface_cone(
     heights: texture_2d<f32>, cones: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
 ) -> SurfaceHit {
@@ -23,8 +23,8 @@ fn surface_cone(
     var samples = 0u;
     var step = 0u;
     while step < bound {
-        // Steps above the surface have a loop of their own, so that the rays of a workgroup wait for each
-        // other's steps only, and not for each other's patches.
+        // Steps above the surface have a loop of their own. The rays of a workgroup then wait only for each other's steps, not
+        // for each other's patches.
         var node: SurfaceNode;
         var exits: vec2<f32>;
         var leave: f32;
@@ -34,7 +34,7 @@ fn surface_cone(
             node = surface_node(grid, cell, 0u);
             exits = surface_exits(grid, node);
             leave = clamp(min(exits.x, exits.y), parameter, 1.0);
-            // The cell's highest corner, and the radius of the cone in cells at height 1 above it.
+            // Height of the cell's highest corner (r), and radius of the cone in cells at height 1 above the corner (g).
             let cone = textureLoad(cones, node.index, 0).rg;
             samples += 1u;
             if 1.0 - leave <= cone.r {
@@ -74,7 +74,7 @@ fn surface_cone(
         cell = surface_beyond(grid, node, exits, leave);
         parameter = leave;
     }
-    // The bottom of the volume is on or below every surface.
+    // A ray that reaches the bottom of the volume has hit, because no surface lies below the bottom.
     let outcome = select(SURFACE_EXHAUSTED, SURFACE_HIT, parameter >= 1.0);
     return surface_point(ray, parameter, samples, outcome);
 }

@@ -1,7 +1,7 @@
-// Transparency by a pattern of opaque pixels.
+// Screen-door transparency: a pattern of opaque pixels.
 
-// Alpha threshold of a pixel, between 0 and 1: pixels with a lower alpha are discarded. It is the rank of the pixel's position
-// in a 4 × 4 ordered-dither matrix (Bayer 1973).
+// Alpha threshold of a pixel, between 0 and 1: pixels with a lower alpha are discarded. The threshold is the rank of the
+// pixel's position `place` in a 4 × 4 ordered-dither matrix (Bayer 1973).
 fn surface_dither_threshold(place: vec2<u32>) -> f32 {
     let fine = place & vec2<u32>(1u);
     let coarse = (place >> vec2<u32>(1u)) & vec2<u32>(1u);

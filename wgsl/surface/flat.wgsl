@@ -2,7 +2,7 @@
 import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 
-// Plain texturing: the point of the polygon itself.
+// Plain texturing: the hit is the polygon's own point.
 fn surface_plain(ray: SurfaceRay) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
@@ -10,21 +10,21 @@ fn surface_plain(ray: SurfaceRay) -> SurfaceHit {
     return surface_point(ray, ray.polygon, 0u, SURFACE_HIT);
 }
 
-// The height at the polygon's point decides how far along the ray the surface is assumed to be; `limit`
-// shortens that distance.
+// Parallax with a single height: the height at the polygon's point decides how far along the ray the hit lies. `limit` shortens
+// that distance.
 fn surface_shifted(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch, limit: f32) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
     }
     let height = surface_height(heights, surface_at(ray, ray.polygon), march.mip, march.address);
-    // (h·s + b)·V.xy/V.z with b = −p·s, expressed as a change of the ray's parameter.
+    // The shift (h·s + b)·V.xy/V.z with b = −p·s, expressed as a change of the ray's parameter.
     let parameter = ray.polygon - (height - (1.0 - ray.polygon)) * limit;
     var hit = surface_point(ray, parameter, SURFACE_BILINEAR, SURFACE_HIT);
     hit.height = height;
     return hit;
 }
 
-// Kaneko's parallax mapping.
+// Parallax mapping by Kaneko, without a limit of the shift.
 fn surface_parallax(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     return surface_shifted(heights, ray, march, 1.0);
 }

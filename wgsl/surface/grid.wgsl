@@ -1,46 +1,49 @@
-// The grid of bilinear cells under a ray. A cell lies between four texel centers. With wrap addressing a tile
-// has as many cells as texels. With clamp addressing it has one more per axis, and the outermost cells extend
-// to infinity with constant heights. In both modes the cells cover the whole plane, so a ray never leaves the
-// grid.
+// Grid of bilinear cells under a ray. A cell lies between four texel centers. With wrap addressing, a tile has the same number
+// of cells and texels. With clamp addressing, a tile has one more cell per axis, and the outermost cells extend to infinity
+// with constant heights. In both modes the cells cover the whole plane, so a ray never leaves the grid.
 import package::wgsl::surface::ray::{SURFACE_WRAP, SurfaceRay};
 
-// A distance in cells that no ray travels.
+// A distance in cells that is longer than any ray's path.
 const SURFACE_FAR: i32 = 1073741824;
 
-// A ray that travels less than this many cells along an axis never leaves a cell along that axis.
+// If a ray travels fewer cells than this along an axis, it never leaves a cell along that axis.
 const SURFACE_LEAST_TRAVEL: f32 = 1e-6;
 
-// A parameter that no ray reaches.
+// A ray parameter that no ray reaches.
 const SURFACE_NEVER: f32 = 2.0;
 
-// The cells that a ray crosses.
+// Grid of cells under a ray, relative to the cell in which the ray enters.
 struct SurfaceGrid {
-    // Texels of a tile.
+    // Number of texels of a tile along each axis.
     size: vec2<i32>,
-    // Cells of a tile.
+    // Number of cells of a tile along each axis.
     cells: vec2<i32>,
-    // The cell in which the ray enters, reduced to the tile if it wraps, and the ray's position in that cell.
-    // Other cells are counted from it, which keeps f32 exact.
+    // Cell in which the ray enters, reduced to the tile if addresses wrap. Other cells are counted from this cell, which keeps
+    // f32 exact.
     base: vec2<i32>,
+    // Position in the base cell at which the ray enters, 0 to 1.
     start: vec2<f32>,
-    // The reciprocals of the tile's edges in texels.
+    // Reciprocals of the tile's edges in texels.
     tiles: vec2<f32>,
-    // The number of cells that the ray travels in all, and its reciprocal, or 0 along an axis where the ray
-    // hardly travels.
+    // Distance in cells that the ray travels along each axis, with sign.
     travel: vec2<f32>,
+    // Reciprocal of `travel`; 0 along an axis where the ray hardly travels.
     inverse: vec2<f32>,
+    // Address mode: SURFACE_WRAP or SURFACE_CLAMP.
     address: u32,
 }
 
-// A square of cells: its index at its level, and its edges in cells from the base; the upper edges are
-// exclusive.
+// A square of cells: a node of the pyramid.
 struct SurfaceNode {
+    // Index of the node at its level.
     index: vec2<i32>,
+    // Lower edges in cells, counted from the base cell.
     low: vec2<i32>,
+    // Upper edges in cells, counted from the base cell; exclusive.
     high: vec2<i32>,
 }
 
-// The grid of a map of `size` texels under a ray.
+// Grid of cells under a ray, for a map of `size` texels.
 fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
     let scale = vec2<f32>(size);
     let texel = ray.origin * scale - 0.5;
@@ -62,13 +65,13 @@ fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
 // Largest number of cells that a ray is assumed to cross.
 const SURFACE_MAX_CROSSED: f32 = 16384.0;
 
-// Upper bound of the steps of a ray: it visits every node that it can touch once.
+// Upper bound of the number of steps of a ray, which visits every node that it can touch once.
 fn surface_bound(grid: SurfaceGrid, levels: u32) -> u32 {
     let crossed = min(abs(grid.travel.x) + abs(grid.travel.y), SURFACE_MAX_CROSSED);
     return 2u * (u32(crossed) + 3u) + levels;
 }
 
-// The node of 2^level × 2^level cells that contains a cell. Nodes end at the tile's edge.
+// Node of 2^level × 2^level cells that contains a cell. Nodes end at the tile's edge.
 fn surface_node(grid: SurfaceGrid, cell: vec2<i32>, level: u32) -> SurfaceNode {
     let shift = vec2<u32>(level);
     let absolute = grid.base + cell;
@@ -95,20 +98,20 @@ fn surface_node(grid: SurfaceGrid, cell: vec2<i32>, level: u32) -> SurfaceNode {
     return SurfaceNode(index, low, high);
 }
 
-// The parameters at which the ray would leave a node through its x edge and through its y edge.
+// Ray parameters at which the ray would leave a node through its x edge (x) and through its y edge (y).
 fn surface_exits(grid: SurfaceGrid, node: SurfaceNode) -> vec2<f32> {
     let edge = select(node.low, node.high, grid.travel >= vec2<f32>(0.0));
     let exits = (vec2<f32>(edge) - grid.start) * grid.inverse;
     return select(exits, vec2<f32>(SURFACE_NEVER), grid.inverse == vec2<f32>(0.0));
 }
 
-// The cell of a node in which the ray is at a parameter.
+// Cell of a node in which the ray is at a parameter.
 fn surface_cell(grid: SurfaceGrid, node: SurfaceNode, parameter: f32) -> vec2<i32> {
     let at = vec2<i32>(floor(grid.start + parameter * grid.travel));
     return clamp(at, node.low, node.high - 1);
 }
 
-// The cell beyond the edge through which the ray leaves a node.
+// Cell beyond the edge through which the ray leaves a node.
 fn surface_beyond(grid: SurfaceGrid, node: SurfaceNode, exits: vec2<f32>, parameter: f32) -> vec2<i32> {
     var next = surface_cell(grid, node, parameter);
     if exits.x <= exits.y {
@@ -119,7 +122,7 @@ fn surface_beyond(grid: SurfaceGrid, node: SurfaceNode, exits: vec2<f32>, parame
     return next;
 }
 
-// The four heights of a cell: (0,0), (1,0), (0,1), (1,1).
+// Heights at the four corners of a cell: (0,0), (1,0), (0,1), (1,1).
 fn surface_corners(heights: texture_2d<f32>, grid: SurfaceGrid, index: vec2<i32>) -> vec4<f32> {
     var low = index;
     var high = index + 1;
@@ -136,8 +139,8 @@ fn surface_corners(heights: texture_2d<f32>, grid: SurfaceGrid, index: vec2<i32>
         textureLoad(heights, high, 0).r);
 }
 
-// The first parameter in enter..=leave at which the ray is on or below the bilinear patch of a cell, or -1.
-// `low` is the cell's corner. Along the ray, the height above a patch is a quadratic function.
+// First ray parameter in enter..=leave at which the ray is on or below the bilinear patch of a cell; -1 if there is none. `low`
+// is the cell's corner. Along the ray, the height above a patch is a quadratic function.
 fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f32, leave: f32) -> f32 {
     let at = (grid.start - vec2<f32>(low)) + enter * grid.travel;
     let slope = vec2<f32>(corners.y - corners.x, corners.z - corners.x);
@@ -154,9 +157,9 @@ fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f
     let a = -twist * ahead.x * ahead.y;
     let discriminant = b * b - a * c;
     let root = sqrt(max(discriminant, 0.0));
-    // The smaller positive root, in a form without a difference of nearly equal numbers. It is in 0..=1 only if
-    // the denominator is at least as large as the numerator. A ray that moves away from the surface (b > 0)
-    // meets it again only if the surface rises towards it (a < 0).
+    // The smaller positive root, in a form without a difference of nearly equal numbers. The root is in 0..=1 only if the
+    // denominator is at least as large as the numerator. A ray that moves away from the surface (b > 0) meets it again only if
+    // the surface rises towards the ray (a < 0).
     let over = select(c, b + root, b > 0.0);
     let under = select(root - b, -a, b > 0.0);
     if discriminant >= 0.0 && under >= over {
@@ -165,8 +168,8 @@ fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f
     return select(-1.0, leave, a + 2.0 * b + c <= 0.0);
 }
 
-// The corner that a leaf's patch is relative to. Along an axis where the leaf extends to infinity, heights are constant, and
-// any corner will do.
+// Corner to which a leaf's patch is relative. Along an axis where the leaf extends to infinity, heights are constant, and any
+// corner will do.
 fn surface_corner(leaf: SurfaceNode) -> vec2<i32> {
     return select(leaf.low, leaf.high - 1, leaf.low == vec2<i32>(-SURFACE_FAR));
 }

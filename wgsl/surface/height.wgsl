@@ -1,11 +1,11 @@
-// Heights from texel loads with bilinear weights. They use neither derivatives nor filtering that depends on
-// the driver, so that a march may call them in any control flow. The red channel is the height.
+// Bilinear heights, computed from texel loads. The functions use neither derivatives nor filtering that depends on the driver,
+// so a march may call them in any control flow. The red channel is the height.
 import package::wgsl::surface::ray::SURFACE_WRAP;
 
-// Number of texel loads of one bilinear height.
+// Number of texel loads for one bilinear height.
 const SURFACE_BILINEAR: u32 = 4u;
 
-// The height at uv, 0 to 1, at a mip level; `address` is SURFACE_WRAP or SURFACE_CLAMP.
+// Height at uv, 0 to 1, at a mip level. `address` is SURFACE_WRAP or SURFACE_CLAMP.
 fn surface_height(heights: texture_2d<f32>, uv: vec2<f32>, mip: u32, address: u32) -> f32 {
     let size = vec2<f32>(textureDimensions(heights, mip));
     let last = vec2<i32>(size) - 1;
@@ -36,7 +36,7 @@ fn surface_height(heights: texture_2d<f32>, uv: vec2<f32>, mip: u32, address: u3
     return rows.x + weight.x * (rows.y - rows.x);
 }
 
-// The mip level at which a texel is about as large as a pixel.
+// Mip level at which a texel is about as large as a pixel. `uv_dx` and `uv_dy` are the screen derivatives of uv.
 fn surface_mip(heights: texture_2d<f32>, uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> u32 {
     let size = vec2<f32>(textureDimensions(heights));
     let texels = max(dot(uv_dx * size, uv_dx * size), dot(uv_dy * size, uv_dy * size));

@@ -1,39 +1,43 @@
-// Linear search: relief mapping, which refines the result by a binary search (B section 3.1.2, table 4.4), and
-// parallax occlusion mapping, which refines it by a segment (B section 2.3.1). Both may step over features that
-// are thinner than a step.
+// Linear search. Relief mapping refines the result by a binary search (B section 3.1.2, table 4.4). Parallax occlusion mapping
+// refines it by a segment (B section 2.3.1). Both may step over features that are thinner than a step.
 import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 
-// Limits of the numbers of steps in a march.
+// Largest number of linear steps in a march.
 const SURFACE_MAX_STEPS: u32 = 1024u;
+// Largest number of binary steps in a march.
 const SURFACE_MAX_BINARY: u32 = 24u;
-// Lower bound of the divisor: the sum of the heights above and below the surface.
+// Smallest divisor in `surface_occlusion`: the sum of the ray's distances above and below the surface.
 const SURFACE_LEAST_SPAN: f32 = 1e-12;
 
-// The two points between which a linear search stopped: the last one above the surface, and the first one on or
-// below it, with the heights of the surface at both.
+// The two points of a ray between which a linear search stopped.
 struct SurfaceBracket {
+    // Parameter of the last point above the surface.
     above: f32,
+    // Parameter of the first point on or below the surface.
     under: f32,
+    // Height of the surface at `above`.
     height_above: f32,
+    // Height of the surface at `under`.
     height_under: f32,
+    // Number of texels loaded.
     samples: u32,
 }
 
-// The number of linear steps at a cosine: ⌈mix(min, max, 1 − V.z)⌉, 1 to `SURFACE_MAX_STEPS`.
+// Number of linear steps for the cosine of a ray: ⌈mix(min, max, 1 − V.z)⌉, 1 to `SURFACE_MAX_STEPS`.
 fn surface_steps(march: SurfaceMarch, cosine: f32) -> u32 {
     let low = f32(march.min_steps);
     let steps = ceil(low + (f32(march.max_steps) - low) * (1.0 - min(cosine, 1.0)));
     return clamp(u32(steps), 1u, SURFACE_MAX_STEPS);
 }
 
-// Takes steps of equal length from the top until a point is on or below the surface.
+// Linear search: takes steps of equal length from the top of the volume until a point is on or below the surface.
 fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceBracket {
     let steps = surface_steps(march, ray.cosine);
     let width = 1.0 / f32(steps);
     var bracket = SurfaceBracket(0.0, 1.0, 0.0, 0.0, 0u);
     for (var step = 1u; step <= SURFACE_MAX_STEPS; step++) {
-        // The bottom is on or below every surface, so the last step always stops.
+        // The bottom of the volume is on or below every surface, so the last step always stops.
         let parameter = select(f32(step) * width, 1.0, step >= steps);
         let height = surface_height(heights, surface_at(ray, parameter), march.mip, march.address);
         bracket.samples += SURFACE_BILINEAR;
@@ -48,7 +52,7 @@ fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     return bracket;
 }
 
-// Relief mapping: linear search, then binary search.
+// Relief mapping: a linear search, then a binary search.
 fn surface_relief(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
@@ -57,7 +61,8 @@ fn surface_relief(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     return surface_narrowed(heights, ray, march, bracket.above, bracket.under, bracket.samples);
 }
 
-// Binary search between a point above the surface and one on or below it.
+// Binary search between the parameters `above`, where the ray is above the surface, and `under`, where it is on or below.
+// `samples` is the number of texels loaded before.
 fn surface_narrowed(
     heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch, above: f32, under: f32, samples: u32,
 ) -> SurfaceHit {
@@ -77,8 +82,7 @@ fn surface_narrowed(
     return surface_point(ray, 0.5 * (low + high), loads, SURFACE_HIT);
 }
 
-// Parallax occlusion mapping: linear search, then the intersection with the segment between the last two
-// heights.
+// Parallax occlusion mapping: a linear search, then the intersection with the segment between the last two heights.
 fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch) -> SurfaceHit {
     if !(ray.cosine > 0.0) {
         return surface_missed(ray);
@@ -90,7 +94,7 @@ fn surface_occlusion(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMa
     }
     let over = max(1.0 - bracket.above - bracket.height_above, 0.0);
     let below = max(bracket.height_under - (1.0 - bracket.under), 0.0);
-    // The fraction of the segment that lies above the surface; if both distances vanish, its end.
+    // Fraction of the segment that lies above the surface. It is 1 if both distances vanish.
     let fraction = select(1.0, over / max(over + below, SURFACE_LEAST_SPAN), over + below > SURFACE_LEAST_SPAN);
     let parameter = bracket.above + fraction * (bracket.under - bracket.above);
     return surface_point(ray, parameter, bracket.samples, SURFACE_HIT);

@@ -1,6 +1,6 @@
-// Surface mapping: every ray-height method through `surface_trace`, and normals, self-shadow, depth, silhouettes and
-// transparency by dithering. `build.rs` joins this file and its imports into one text, for shaders that are not composed with
-// WESL. Prepend that text to your own code.
+// Surface mapping: every ray-height method through `surface_trace`; also normals, self-shadow, depth, silhouettes and dithered
+// transparency. `build.rs` joins this file and its imports into one text, for shaders that are not composed with WESL. Prepend
+// that text to your own code.
 import package::wgsl::surface::ray::{surface_inside, surface_ray};
 import package::wgsl::surface::height::surface_mip;
 import package::wgsl::surface::trace::surface_trace;

@@ -1,10 +1,11 @@
-// Max-mip traversal (B section 2.3.4; Tevs, Ihrke and Seidel 2008): nodes above which the ray passes are
-// skipped as a whole, and in a leaf the ray is intersected exactly with the bilinear patch.
+// Max-mip traversal (B section 2.3.4; Tevs, Ihrke and Seidel 2008). If the ray passes above a node, the whole node is skipped.
+// In a leaf, the ray is intersected exactly with the bilinear patch.
 import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_missed, surface_point};
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};
 
-// `pyramid` is the max-mip pyramid of `heights`, computed by surface/height_pyramid. Uses the address of `march`.
+// Traces a ray by max-mip traversal. `pyramid` is the max-mip pyramid of `heights`, computed by surface/height_pyramid. Only
+// the address mode of `march` is used.
 fn surface_quadtree(
     heights: texture_2d<f32>, pyramid: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch,
 ) -> SurfaceHit {
@@ -14,7 +15,7 @@ fn surface_quadtree(
     let grid = surface_grid(textureDimensions(heights), ray, march.address);
     let top = surface_levels(vec2<u32>(grid.cells)) - 1u;
     let bound = surface_bound(grid, top);
-    // The traversal starts with nodes of half the ray's length, since larger ones can rarely be skipped.
+    // The traversal starts with nodes of half the ray's length, because larger nodes can rarely be skipped.
     let longest = u32(max(abs(grid.travel.x), abs(grid.travel.y)));
     var level = min(firstLeadingBit(max(longest / 2u, 1u)), top);
     var cell = vec2<i32>(0);
@@ -22,8 +23,8 @@ fn surface_quadtree(
     var samples = 0u;
     var step = 0u;
     while step < bound {
-        // Nodes have a loop of their own, so that the rays of a workgroup wait for each other's nodes only, and
-        // not for each other's patches.
+        // Nodes have a loop of their own. The rays of a workgroup then wait only for each other's nodes, not for each other's
+        // patches.
         var node: SurfaceNode;
         var exits: vec2<f32>;
         var leave: f32;
@@ -67,7 +68,7 @@ fn surface_quadtree(
         parameter = leave;
         level = min(select(0u, 1u, surface_leaves_parent(grid, node, exits, 0u)), top);
     }
-    // The bottom of the volume is on or below every surface.
+    // A ray that reaches the bottom of the volume has hit, because no surface lies below the bottom.
     let outcome = select(SURFACE_EXHAUSTED, SURFACE_HIT, parameter >= 1.0);
     return surface_point(ray, parameter, samples, outcome);
 }

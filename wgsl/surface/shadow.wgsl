@@ -1,30 +1,29 @@
-// Self-shadow: whether light reaches a point of the surface (B section 3.1.2). Hard shadow traces the light's
-// own ray from the top of the volume with any method; the point is lit if the ray ends there. Soft shadow
-// samples how far the surface rises above the way to the light; the further the occluder, the wider the
-// penumbra.
+// Self-shadow: whether light reaches a point of the surface (B section 3.1.2). Hard shadow traces a ray from the light, from
+// the top of the volume, with any method; the point is lit if this ray ends there. Soft shadow samples how far the surface
+// rises above the path to the light. The further the occluder, the wider the penumbra.
 import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::height::surface_height;
 import package::wgsl::surface::linear::SURFACE_MAX_STEPS;
 
-// The height difference below which a point does not shade itself, as a fraction of the relief's depth.
+// Height difference below which a point does not shade itself, as a fraction of the relief's depth.
 const SURFACE_SHADOW_BIAS: f32 = 0.005;
-// Added to the distance of an occluder, as a fraction of the relief's depth, so that none is at distance 0.
+// Addend to the distance of an occluder, as a fraction of the relief's depth, so that no occluder is at distance 0.
 const SURFACE_LEAST_OCCLUSION: f32 = 0.001;
 
-// The ray from the light to a point of the surface: it falls from the top of the volume to the hit. `light` is
-// the unit vector towards the light, in tangent space.
+// Ray from the light to a point of the surface: it falls from the top of the volume to the hit. `light` is the unit vector
+// towards the light, in tangent space.
 fn surface_light_ray(hit: SurfaceHit, light: vec3<f32>, scale: f32) -> SurfaceRay {
     let slope = light.xy * (-scale / max(light.z, SURFACE_LEAST_COSINE));
     return SurfaceRay(hit.uv - (1.0 - hit.height) * slope, slope, light.z, 0.0);
 }
 
-// Whether the light's ray ended above the point at which it was aimed.
+// Whether the light's ray, with the result `first`, ended above the point `hit` at which it was aimed.
 fn surface_shaded(first: SurfaceHit, hit: SurfaceHit) -> bool {
     return first.parameter < 1.0 - hit.height - SURFACE_SHADOW_BIAS;
 }
 
-// Light that reaches a point, 0 (full shadow) to 1 (full light), from `steps` heights on the way to the light. `softness` is
-// the width of the penumbra: the ratio of the surface's height above the way to its distance at which shadow is full.
+// Light that reaches a point, 0 (full shadow) to 1 (full light), from `steps` heights on the path to the light. `softness` is
+// the width of the penumbra: the ratio of the surface's height above the path to its distance at which shadow is full.
 fn surface_soft_shadow(
     heights: texture_2d<f32>, hit: SurfaceHit, light: vec3<f32>, scale: f32, march: SurfaceMarch,
     steps: u32, softness: f32,
@@ -32,7 +31,7 @@ fn surface_soft_shadow(
     if !(light.z > 0.0) {
         return 0.0;
     }
-    // Starts at the surface, because the method may have ended slightly below it.
+    // The march starts at the surface, because the method may have ended slightly below it.
     let own = surface_height(heights, hit.uv, march.mip, march.address);
     var start = hit;
     start.height = max(hit.height, own);

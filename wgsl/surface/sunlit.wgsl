@@ -1,26 +1,27 @@
-// The light that reaches a point of a relief, by any kind of shadow.
+// Light that reaches a point of a relief, for every kind of self-shadow.
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch};
 import package::wgsl::surface::shadow::{surface_light_ray, surface_shaded, surface_soft_shadow};
 import package::wgsl::surface::trace::surface_trace;
 
-// No shadow.
+// Kind of self-shadow: none.
 const SURFACE_SHADOW_NONE: u32 = 0u;
-// Light or no light: a ray from the light, traced as the eye's ray is.
+// Kind of self-shadow: full light or none. A ray from the light is traced like the eye's ray.
 const SURFACE_SHADOW_HARD: u32 = 1u;
-// Penumbras.
+// Kind of self-shadow: soft, with penumbras.
 const SURFACE_SHADOW_SOFT: u32 = 2u;
 
-// How a relief shades itself.
+// Parameters of a relief's self-shadow.
 struct SurfaceShadow {
     // Depth of the relief in uv units.
     scale: f32,
-    // For soft shadow: number of steps, and the ratio of excess height to distance at which shadow is full.
+    // Number of steps of a soft shadow.
     steps: u32,
+    // Softness of a soft shadow: the ratio of excess height to distance at which shadow is full.
     softness: f32,
 }
 
-// The fraction of the light that reaches a hit. `light` is the unit vector towards it in tangent space; `shadow` is one of
-// the constants above.
+// Fraction of the light that reaches a hit, 0 to 1. `light` is the unit vector towards the light in tangent space. `shadow` is
+// one of the constants above.
 fn surface_sunlit(
     method: u32, shadow: u32, heights: texture_2d<f32>, acceleration: texture_2d<f32>,
     hit: SurfaceHit, light: vec3<f32>, relief: SurfaceShadow, march: SurfaceMarch,
@@ -36,8 +37,8 @@ fn surface_sunlit(
     return select(1.0, 0.0, surface_shaded(first, hit));
 }
 
-// The unit normal of a texel of a normal map, in tangent space. Its green channel points up the image, against v, or down
-// it.
+// Unit normal in tangent space, from a texel of a normal map. The texture's green channel points up the image, against v, if
+// `green_up` is true; otherwise down.
 fn surface_mapped_normal(texel: vec4<f32>, green_up: bool) -> vec3<f32> {
     let slope = texel.xy * 2.0 - 1.0;
     return vec3<f32>(slope.x, select(slope.y, -slope.y, green_up), sqrt(max(1.0 - dot(slope, slope), 0.0)));

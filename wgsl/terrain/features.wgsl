@@ -1,48 +1,61 @@
-// Injected heights of a window (B section 3.3.1, feature injection). A grid has one bit per point, in rows of
-// 32-bit words. It covers one point more than the window on every side. Each word comes with the index of its first
-// value. A lookup takes one load where there is no feature, and a population count where there is one.
+// Features: heights that are injected into a window (B section 3.3.1, feature injection). A feature grid has one bit per point,
+// in rows of 32-bit words. The grid covers one point more than the window on every side. Each word comes with the index of its
+// first value. A lookup takes one load where there is no feature, and also a population count where there is one.
 
+// Feature mode: no features.
 const FEATURES_NONE = 0u;
+// Feature mode: a feature's height replaces the computed height.
 const FEATURES_KEEP = 1u;
+// Feature mode: a feature's height is added to the computed height.
 const FEATURES_ADDITIVE = 2u;
 
+// Feature mode: one of the constants above.
 override FEATURES: u32 = 0u;
 
+// Size and location of the feature grids of a batch of windows.
 struct FeatureGrid {
-    // Points along an edge of the window.
+    // Number of points along an edge of the window.
     width: u32,
+    // Number of 32-bit words per row of a grid.
     words_per_row: u32,
+    // Number of words in the grid of one window.
     words_per_window: u32,
-    // Index of the word at which the grid's first window starts.
+    // Index of the word at which the grid of the first window starts.
     start: u32,
 }
 
+// 32 points of a feature grid.
 struct FeatureWord {
+    // One bit per point: 1 if the point has a feature.
     mask: u32,
+    // Index in `feature_heights` of the height of the word's first feature.
     first_value: u32,
 }
 
+// Words of all feature grids.
 @group(1) @binding(0) var<storage, read> feature_words: array<FeatureWord>;
+// Heights of the features, in 1/65536 world units.
 @group(1) @binding(1) var<storage, read> feature_heights: array<i32>;
 
-// The word that holds the point. A point beyond the grid gets a word of the grid's rim.
+// Word of the grid that contains a point. A point beyond the grid gets a word of the grid's rim.
 fn feature_word(grid: FeatureGrid, window: u32, at: vec2<i32>) -> FeatureWord {
     let place = vec2<u32>(clamp(at + vec2<i32>(1), vec2<i32>(0), vec2<i32>(i32(grid.width) + 1)));
     return feature_words[
         grid.start + window * grid.words_per_window + place.y * grid.words_per_row + place.x / 32u];
 }
 
-// The bit of the point in its word; 0 beyond the grid.
+// Bit of a point in its word, as a mask; 0 beyond the grid.
 fn feature_bit(grid: FeatureGrid, at: vec2<i32>) -> u32 {
     let place = vec2<u32>(at + vec2<i32>(1));
     return select(0u, 1u << (place.x % 32u), all(place < vec2<u32>(grid.width + 2u)));
 }
 
+// Whether a point of a window has a feature.
 fn has_feature(grid: FeatureGrid, window: u32, at: vec2<i32>) -> bool {
     return (feature_word(grid, window, at).mask & feature_bit(grid, at)) != 0u;
 }
 
-// The height of a point after injection, given the computed height.
+// Height of a point after injection. `height` is the computed height.
 fn injected(grid: FeatureGrid, window: u32, at: vec2<i32>, height: i32) -> i32 {
     let word = feature_word(grid, window, at);
     let bit = feature_bit(grid, at);

@@ -1,13 +1,13 @@
-// Exact integer arithmetic of terrain heights (i32, Q15.16). No operation here can overflow for heights
-// within the bound that the host checks (2^30 - 1), so every device gives the same bits.
+// Exact integer arithmetic of terrain heights (i32, Q15.16). No operation overflows for heights within the bound that the host
+// checks, 2^30 - 1. Every device therefore gives the same bits.
 
-// One world unit of height.
+// One world unit of height, in 1/65536 units.
 const HEIGHT_ONE: i32 = 65536;
-// The largest absolute height, in 1/65536 units.
+// Largest absolute height, in 1/65536 units.
 const HEIGHT_LIMIT: i32 = 0x3fffffff;
 
-// The mean of four heights, rounded half up, for four lanes at once. If the sums of two pairs are 2p + x and 2q + y, it is
-// floor((p + q + 1 + x & y) / 2); no step overflows for heights of at most 2^30 - 1.
+// Mean of four heights, rounded half up, for four lanes at once. If the sums of two pairs are 2p + x and 2q + y, the mean is
+// floor((p + q + 1 + x & y) / 2). No step overflows for heights of at most 2^30 - 1.
 fn mean_of_four(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i32> {
     let one = vec4<u32>(1u);
     let first = a + b;
@@ -16,7 +16,7 @@ fn mean_of_four(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<
     return ((first >> one) + (second >> one) + carry) >> one;
 }
 
-// The high word of the 64-bit product.
+// High 32 bits of the 64-bit product a * b, per lane.
 fn multiply_high(a: vec4<u32>, b: u32) -> vec4<u32> {
     let low = vec4<u32>(0xffffu);
     let half = vec4<u32>(16u);
@@ -38,13 +38,13 @@ fn four_point(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i3
     return whole + ((9 * ((b & low) + (c & low)) - ((a & low) + (d & low)) + 8) >> four);
 }
 
-// The mean of two heights, rounded half up.
+// Mean of two heights, rounded half up, for four lanes at once.
 fn mean_of_two(a: vec4<i32>, b: vec4<i32>) -> vec4<i32> {
     let one = vec4<u32>(1u);
     return (a >> one) + (b >> one) + (((a & vec4<i32>(1)) + (b & vec4<i32>(1)) + 1) >> one);
 }
 
-// The nearest height of at most `HEIGHT_LIMIT`.
+// Heights clamped to ±`HEIGHT_LIMIT`.
 fn limited(heights: vec4<i32>) -> vec4<i32> {
     return max(min(heights, vec4<i32>(HEIGHT_LIMIT)), vec4<i32>(-HEIGHT_LIMIT));
 }

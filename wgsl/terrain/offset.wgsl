@@ -1,16 +1,16 @@
-// The random offset of a height (i32, Q15.16), made from the words drawn at its world coordinates.
+// Random offset of a height (i32, Q15.16), computed from the random words for the height's world coordinates.
 import package::wgsl::hash::Words;
 import package::wgsl::terrain::fixed::multiply_high;
 
-// Uniform in ±range.
+// Distribution of offsets: uniform in ±range.
 const OFFSET_SIGNED = 0u;
-// Uniform in 0 to range.
+// Distribution of offsets: uniform in 0 to range.
 const OFFSET_POSITIVE = 1u;
-// Nearly Gaussian in ±range.
+// Distribution of offsets: nearly Gaussian in ±range.
 const OFFSET_GAUSSIAN = 2u;
 
-// Four offsets in 1/65536 units. `distribution` is one of the constants above. `range` has the same units and
-// is at most 2^30, so that twice the range fits.
+// Four random offsets in 1/65536 units. `distribution` is one of the constants above. `range` has the same units and is at most
+// 2^30, so that twice the range fits.
 fn height_offset(distribution: u32, range: u32, words: Words) -> vec4<i32> {
     if distribution == OFFSET_POSITIVE {
         return vec4<i32>(multiply_high(words.first, range));
@@ -22,7 +22,7 @@ fn height_offset(distribution: u32, range: u32, words: Words) -> vec4<i32> {
     return vec4<i32>(multiply_high(uniform_word, 2u * range)) - vec4<i32>(i32(range));
 }
 
-// The sum of four 16-bit uniforms (nearly Gaussian), scaled to 32 bits and centered on 2^31.
+// Sum of four 16-bit uniform numbers (nearly Gaussian), scaled to 32 bits and centered on 2^31, per lane.
 fn sum_of_halves(words: Words) -> vec4<u32> {
     let low = vec4<u32>(0xffffu);
     let half = vec4<u32>(16u);

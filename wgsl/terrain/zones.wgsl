@@ -1,23 +1,23 @@
-// Zones of ground by height and steepness (B section 3.3.1, equation 3.6), blended by the height maps of their textures
-// (height blending, B section 2.3.4), to import into any material shader.
+// Zones of ground by height and steepness (B section 3.3.1, equation 3.6). The height maps of their textures blend the zones
+// (height blending, B section 2.3.4). Any material shader may import these functions.
 //
 //     var blend = zone_blend();
 //     for (var z = 0u; z < count; z++) { blend = zone_blended(blend, zones[z], height, steepness(normal), texel_of(z)); }
 //     let albedo = zone_color(blend, additive);
 
-// Ground of one kind: where it lies, and how its texture is blended with others.
+// A kind of ground: the heights and slopes where it lies, and how its texture is blended with other textures.
 struct Zone {
-    // Lower end of the range of heights, in height units.
+    // Lower end of the zone's range of heights, in height units.
     min: f32,
-    // Upper end of the range of heights, in height units, where the weight is greatest.
+    // Upper end of the zone's range of heights, in height units. The weight is greatest there.
     max: f32,
-    // The weight grows with steepness: rise.x * steepness + rise.y, clamped to 0 to 1. (0, 1) is all slopes.
+    // Weight that grows with steepness: rise.x * steepness + rise.y, clamped to 0 to 1. (0, 1) stands for all slopes.
     rise: vec2<f32>,
-    // The weight falls with steepness, in the same way; the two are multiplied.
+    // Weight that falls with steepness: fall.x * steepness + fall.y, clamped to 0 to 1. Both weights are multiplied.
     fall: vec2<f32>,
-    // How much the height map of the texture counts where zones meet, 0 to 1.
+    // Influence of the texture's height map where zones meet, 0 to 1.
     height_blend: f32,
-    // How many times the texture repeats in a texture tile: a whole number, 1 to 16.
+    // Number of times that the texture repeats in a texture tile: a whole number, 1 to 16.
     repeats: f32,
 }
 
@@ -25,28 +25,28 @@ struct Zone {
 struct ZoneBlend {
     // Sum of the zones' colours, each weighted by its zone's weight and height map.
     color: vec3<f32>,
-    // Sum of the weights of `color`.
+    // Sum of the factors with which zones are weighted in `color`.
     total: f32,
-    // Sum of the zones' weights alone, without height maps.
+    // Sum of the zones' weights, without the influence of height maps.
     weight: f32,
-    // The colour of the zone whose range of heights is nearest, and its distance in height units, which is negative inside the
-    // range.
+    // Linear colour of the zone whose range of heights is nearest.
     nearest: vec3<f32>,
+    // Distance to the nearest zone's range of heights, in height units; negative inside the range.
     distance: f32,
 }
 
-// A zone on slopes of all kinds that ignores its texture's height map.
+// A zone that covers slopes of all kinds and ignores its texture's height map.
 fn zone_of_heights(min: f32, max: f32) -> Zone {
     return Zone(min, max, vec2<f32>(0.0, 1.0), vec2<f32>(0.0, 1.0), 0.0, 1.0);
 }
 
-// The tangent of half the angle between a unit normal and the vertical, y: 0 on level ground, 1 on a wall.
+// Steepness of a unit normal: the tangent of half its angle to the vertical, y. It is 0 on level ground and 1 on a wall.
 fn steepness(normal: vec3<f32>) -> f32 {
     return sqrt(normal.x * normal.x + normal.z * normal.z) / (1.0 + normal.y);
 }
 
-// The zone's weight, 0 to 1: by height 1 at max, 0 at max ± (max − min) and beyond (B equation 3.6), times the weight by
-// steepness. `height` is in height units.
+// Weight of a zone, 0 to 1, at a height in height units and a steepness. The weight by height is 1 at max, and 0 from max ±
+// (max − min) on (B equation 3.6). The weights by steepness multiply it.
 fn zone_weight(zone: Zone, height: f32, steep: f32) -> f32 {
     let range = zone.max - zone.min;
     let rise = clamp(zone.rise.x * steep + zone.rise.y, 0.0, 1.0);
@@ -54,8 +54,8 @@ fn zone_weight(zone: Zone, height: f32, steep: f32) -> f32 {
     return max(0.0, (range - abs(height - zone.max)) * (1.0 / range)) * (rise * fall);
 }
 
-// Factor of a weight by the height of a texel, 0 to 1: high texels show first where zones meet. It is 1 without height
-// blending, otherwise down to 16^-4 in the deepest texels.
+// Factor of a zone's weight by the height of its texel, 0 to 1: high texels show first where zones meet. Without height
+// blending, the factor is 1. With it, the factor falls to 16^-4 in the deepest texels.
 fn zone_prominence(zone: Zone, texel_height: f32) -> f32 {
     let depth = 0.9375 * zone.height_blend;
     let reduced = (1.0 - depth) + depth * texel_height;
@@ -63,12 +63,12 @@ fn zone_prominence(zone: Zone, texel_height: f32) -> f32 {
     return squared * squared;
 }
 
-// The state before the first zone.
+// State of the blend before the first zone.
 fn zone_blend() -> ZoneBlend {
     return ZoneBlend(vec3<f32>(0.0), 0.0, 0.0, vec3<f32>(0.0), 3.0e38);
 }
 
-// Adds one zone. `texel` is its linear colour, and in the fourth channel the height of its texture, 0 to 1.
+// Adds one zone to the blend. `texel` is the linear colour of the zone's texture (rgb) and the texture's height, 0 to 1 (w).
 fn zone_blended(blend: ZoneBlend, zone: Zone, height: f32, steep: f32, texel: vec4<f32>) -> ZoneBlend {
     let distance = abs(height - zone.max) - (zone.max - zone.min);
     let nearer = distance < blend.distance;
@@ -82,10 +82,10 @@ fn zone_blended(blend: ZoneBlend, zone: Zone, height: f32, steep: f32, texel: ve
         select(blend.distance, distance, nearer));
 }
 
-// The blended colour. Normalized, the zones' fractions sum to 1, and where all weights are 0, the nearest zone has fraction 1.
-// Additive, they sum to the sum of the weights as they are.
+// The blended linear colour. If `additive` is false, the zones' fractions sum to 1; where all weights are 0, the nearest zone
+// has fraction 1. If `additive` is true, the fractions sum to the sum of the zones' weights.
 fn zone_color(blend: ZoneBlend, additive: bool) -> vec3<f32> {
-    // Where nothing has a weight the colour is 0, and so is its quotient by the smallest normal number.
+    // Where no zone has a weight, the colour is 0. Divided by the smallest normal number, it stays 0.
     let mean = blend.color / max(blend.total, 1.17549435e-38);
     if additive {
         return blend.weight * mean;
