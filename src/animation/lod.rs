@@ -64,7 +64,7 @@ impl Default for Lod {
 pub struct Range {
     /// Distance in metres up to which Ω is 1.
     pub min: f32,
-    /// Distance in metres from which on Ω is 0.
+    /// Distance in metres at and beyond which Ω is 0.
     pub max: f32,
 }
 

@@ -224,7 +224,7 @@ fn looked_at(moments: &[Moment]) -> Vec<Moment> {
 /// triangle of zero area there.
 ///
 /// `clips` are the indices of the clips that will be played; none for a static mesh. `poses` is the number of poses
-/// sampled per clip, at most 216,001. To miss no motion, use the largest result of [`poses_of`]; fewer poses are
+/// sampled per clip, at most 216,001. To miss no motion, use the largest result of [`poses_of`](super::poses_of); fewer poses are
 /// quicker. Without clips, only the rest pose counts, and `poses` may be 1.
 ///
 /// The computing time grows with vertices × clips × poses for vertices that follow several bones. For vertices with one

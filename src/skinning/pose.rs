@@ -114,7 +114,7 @@ pub(super) fn weights_at(model: &Model, mesh: &Mesh, moment: Moment) -> Vec<f32>
     }
 }
 
-/// The positions of the vertices `vertices` of a mesh at a moment. `bones` are the bones' model-space matrices then.
+/// The positions of the vertices `vertices` of a mesh at a moment. `bones` holds the bones' model-space matrices at that moment.
 /// The positions equal those from [`Pose::positions`].
 pub(super) fn positions_of(
     model: &Model,

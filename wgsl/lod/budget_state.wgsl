@@ -8,7 +8,7 @@ struct BudgetState {
     is_missed: u32,
     // Number of triangles drawn, in units of the budget. An instance that fades counts with both levels.
     triangles: u32,
-    // Degree of coarsening: an index of parts in the budget's histogram. Ranks follow one another. Within a rank, the index is
-    // proportional to the logarithm of the factor.
+    // Degree of coarsening: the index of a part of a bin of the budget's histogram. Parts are ordered by rank. Within a rank, the
+    // index is proportional to the logarithm of the factor.
     pressure: u32,
 }

@@ -18,7 +18,7 @@ pub(super) struct MotionTable {
     /// Rotation path between keys that the motion was computed for.
     pub path: RotationPath,
     pub rows: Vec<[u32; 2]>,
-    /// Size of one unit of accumulated motion, in metres or in the dimension of the motion.
+    /// Size of one unit of accumulated motion, in the unit in which the motion is measured: metres for distances.
     pub unit: f64,
 }
 
