@@ -57,8 +57,8 @@ struct LodObject {
     first_draw: u32,
     // Number of parts of the object, each with draws of its own.
     parts: u32,
-    // Factor of the metric, above 0: the LOD bias. If the metric is the allowed displacement, the factor includes the fraction of it that
-    // levels may use.
+    // Factor of the metric, above 0: the LOD bias. If the metric is the allowed displacement, the factor includes the fraction of
+    // the displacement that levels may use.
     metric_scale: f32,
     // Flags word of the object, see `object_flags_word`.
     flags: u32,
