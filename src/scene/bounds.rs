@@ -10,8 +10,9 @@ use crate::scene::object_kind::Placed;
 use crate::scene::pick::MARGIN;
 use crate::scene::placement::Placement;
 
-/// Margin for rounding around a box of vertices, as a fraction of the box's size or of its distance from the cell's corner,
-/// whichever is larger. The host rounds a vertex to `f32` in a few products, each with a relative error of 6e-8.
+/// Margin for rounding around a box of vertices. It is a fraction of the box's diagonal or of the instance's distance from
+/// the cell's corner, whichever is larger. The host computes a vertex with a few products in `f32`, each with a relative
+/// error of 6e-8.
 const TIGHT: f64 = 1e-6;
 
 /// An axis-aligned box in the world.
@@ -37,12 +38,13 @@ impl Scene {
     /// [`Scene::tight_bounds`] returns the smallest box.
     ///
     /// - Mesh: the smallest box, at the cost of one transform per vertex.
-    /// - Character: a box around one ball per bone. Each ball holds the vertices that follow the bone, so the box extends
-    ///   below the feet. The host samples the bones, which takes a few microseconds for a hundred bones.
+    /// - Character: a box around one ball per bone. Each ball is centred on its bone's joint and holds all vertices that
+    ///   follow the bone. The box therefore extends below the feet. The host samples the bones, which takes a few
+    ///   microseconds for a hundred bones.
     /// - Patch of terrain: a box around the patch's bounding sphere.
     ///
     /// Bones that the host wrote in the last frame keep the written values, as in [`Scene::pick`]. The drawn instance may
-    /// deviate by up to [`Quality::pixels`](crate::scene::Quality), and so may reach beyond the box.
+    /// deviate by up to [`Quality::pixels`](crate::scene::Quality), so it may reach beyond the box.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -75,7 +77,7 @@ impl Scene {
     /// heights are unknown, it returns the box of [`Scene::bounds`].
     ///
     /// Bones that the host wrote in the last frame keep the written values, as in [`Scene::pick`]. The drawn instance may
-    /// deviate by up to [`Quality::pixels`](crate::scene::Quality), and so may reach beyond the box.
+    /// deviate by up to [`Quality::pixels`](crate::scene::Quality), so it may reach beyond the box.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more.
@@ -117,8 +119,7 @@ impl Placed {
 }
 
 impl Object {
-    /// The instance with this index, with the transform `place` to world axes relative to the corner of `cell`, at scene
-    /// time `now`.
+    /// The instance `index` at scene time `now`. `place` is its transform to world axes, relative to the corner of `cell`.
     pub(super) fn placed(&self, index: u32, now: f64, place: DAffine3, cell: [i32; 3]) -> Placed {
         let instance = &self.instances.all()[index as usize];
         let [x, y, z, radius] = instance.bounding_sphere.map(f64::from);

@@ -104,8 +104,8 @@ impl CallerText<'_> {
     }
 
     /// Checks that every declared name starts with `name` and is longer than it. Case and underscores do not matter: for
-    /// `grass`, the names `grass_bend`, `GRASS_HEIGHT` and `GrassBlade` pass. The text must not have directives either,
-    /// because it is combined with other texts.
+    /// `grass`, the names `grass_bend`, `GRASS_HEIGHT` and `GrassBlade` pass. Also checks that the text has no
+    /// directives, because it is combined with other texts.
     ///
     /// # Errors
     /// [`InputError`] for the first violation.
@@ -189,7 +189,7 @@ fn block_comment(text: &str) -> usize {
     text.len()
 }
 
-/// The span of the first discard statement in a block or a block nested in it; `None` without discard statements.
+/// The span of the first discard statement in a block, nested blocks included; `None` if there is none.
 pub(crate) fn discard_in(block: &Block) -> Option<Span> {
     block.span_iter().find_map(|(statement, span)| match statement {
         Statement::Kill => Some(*span),

@@ -41,15 +41,15 @@ pub struct Camera {
     /// Near the origin of the world, use (0, 0, 0). Kilometres away, use the eye's own cell, or the picture trembles.
     pub cell: [i32; 3],
     /// The matrix from cell space to view space: a rotation and a translation. Cell space is world space moved to the cell's
-    /// corner, so with cell (0, 0, 0) this is the engine's own view matrix. The matrix may mirror, for example for a
-    /// reflection in water.
+    /// corner. With cell (0, 0, 0), `view_from_cell` equals the engine's own view matrix. The matrix may mirror, for example
+    /// for a reflection in water.
     pub view_from_cell: Mat4,
     /// The projection to clip space: +X to the right, +Y up, depth 0 to 1. The projection also decides the viewing
     /// direction. Right-handed projections, such as those in glam's `camera::rh::proj::directx`, look along −Z. For
     /// [`Depth::Reversed`], use `perspective_infinite_reverse` from that module.
     pub clip_from_view: Mat4,
     /// Width and height of the picture in physical pixels, the unit of [`Quality::pixels`](crate::scene::Quality::pixels).
-    /// They must equal the size of the viewport set in the caller's pass, which may be a part of the target.
+    /// They must equal the size of the viewport set in the caller's pass. This viewport may be a part of the target.
     pub viewport: [u32; 2],
     /// The direction of depth: whether it grows or falls with distance. It must match the projection and the renderer's
     /// [`TargetFormat`](crate::render::TargetFormat).
@@ -75,7 +75,7 @@ impl Camera {
         near_far: [f32; 2],
         viewport: [u32; 2],
     ) -> Self {
-        // Straight up and down the up vector is undefined, so north replaces it.
+        // If the camera looks straight up or down, +Y is no usable up vector, so north replaces it.
         let up = |forward: Vec3| if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
         let look = |forward| glam::camera::rh::view::look_at_mat4(eye, eye + forward, up(forward));
         let view_from_cell = (target - eye).try_normalize().map(look);
@@ -224,7 +224,7 @@ impl Camera {
         ahead.normalize_or(DVec3::NEG_Z).as_vec3()
     }
 
-    /// Whether the picture is a mirror image. Triangles that are counter-clockwise seen from outside then appear clockwise.
+    /// Whether the picture is a mirror image. In a mirror image, front faces appear clockwise instead of counter-clockwise.
     pub(crate) fn is_mirrored(&self) -> bool {
         is_mirrored(&self.clip_with_distance())
     }
@@ -247,7 +247,7 @@ impl Camera {
     }
 }
 
-/// Tags of [`unusable`] matrices: they tell whether the arguments are those of [`Camera::looking_at`] or of
+/// Tags of [`unusable`] matrices. A tag names the constructor that got the arguments: [`Camera::looking_at`] or
 /// [`Camera::framing`].
 const LOOKING: f32 = 0.0;
 const FRAMING: f32 = 1.0;

@@ -17,8 +17,7 @@ pub(crate) struct Chunk {
     pub range: ObjectRange,
     /// The drawables of the chunk, each with one or more parts.
     pub drawables: Vec<Box<dyn Drawable>>,
-    /// Per drawable: the chunk as kernels read it, with the range of the drawable's draws. Valid for the layout it was
-    /// prepared for.
+    /// Per drawable: the chunk in device format, with the range of the drawable's draws. Valid until the next layout.
     pub lods: Vec<LodObject>,
     /// The parts of the chunk whose instances are drawn one by one, from back to front.
     pub sorted: Vec<SortedParts>,
@@ -54,7 +53,8 @@ impl Chunk {
         (self.slots.len() as u32).next_multiple_of(BLOCK)
     }
 
-    /// Index in the scene's instance buffers of the chunk's instance with index `slot` in the object.
+    /// Converts the index `slot` of an instance in the object to the index in the scene's instance buffers. The instance
+    /// must belong to the chunk.
     pub fn place(&self, slot: usize) -> usize {
         self.range.first as usize + slot - self.slots.start
     }

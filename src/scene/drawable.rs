@@ -26,7 +26,7 @@ pub(crate) trait Drawable: Any + Debug + wgpu::WasmNotSendSync {
     /// The index buffer with the triangles of all parts.
     fn indices(&self) -> &wgpu::Buffer;
 
-    /// Stages the uniform `object`, which holds the range of instances, after a layout or its buffers changed.
+    /// Stages the uniform `object`, which holds the range of instances. Called after the layout or its buffers changed.
     fn stage(&self, staged: &mut Staged, object: &SceneObject) -> Result<(), Error> {
         let _ = (staged, object);
         Ok(())
@@ -85,7 +85,7 @@ pub(crate) struct DrawnObject<'a> {
     pub sides: [bool; 2],
     /// How instances change from one level of detail to the next.
     pub transition: Transition,
-    /// The object's bind group 1 in this view; `None` if the drawable has the group.
+    /// The object's bind group 1 in this view; `None` if the drawable has its own.
     pub view_group: Option<&'a Group>,
 }
 
@@ -100,7 +100,7 @@ pub(crate) struct SortedDraws<'a> {
     pub parts: Vec<SortedPart<'a>>,
 }
 
-/// One part of an instance that is drawn by itself, in sorted order.
+/// One draw in sorted order: a part of one instance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SortedPart<'a> {
     /// The drawable that the part belongs to.

@@ -45,9 +45,9 @@ impl<'a> Poses<'a> {
     ///
     /// The write is recorded as a copy of 48 bytes into `encoder`, which must be the encoder passed to `pose`. Work recorded
     /// later in the same encoder sees the new value. The write holds for this frame only: the next frame samples the bone
-    /// again, so write in every frame. [`Scene::pick`], [`Scene::bounds`] and [`Scene::tight_bounds`] use the values that
-    /// the last frame wrote. Nothing is submitted, and memory is allocated only if a frame writes more than any frame
-    /// before.
+    /// again, so write in every frame. [`Scene::pick`], [`Scene::bounds`] and [`Scene::tight_bounds`] use the values
+    /// written in the last frame. Nothing is submitted. Memory is allocated only if a frame writes more than any earlier
+    /// frame.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, for a bone that is not driven, for a
@@ -102,13 +102,13 @@ impl Scene {
     ///
     /// In every frame in which a view sees the instance, driven bones are sampled at the frame's time, even if their motion
     /// is too small to be seen. The caller may then change them ([`Scene::record_with`]). Driven bones and all bones below
-    /// them count as updated. [`Quality::pixels`](crate::scene::Quality) bounds the error of the sampled pose, not the
-    /// caller's changes. Culling uses the bounding sphere of the clip, so driven bones should stay near it. Changing the
-    /// driven bones of an object allocates memory in the next frame.
+    /// them count as updated, so their vertices are skinned again. [`Quality::pixels`](crate::scene::Quality) bounds
+    /// the error of the sampled pose, not the caller's changes. Culling uses the bounding sphere of the clip, so driven bones
+    /// should stay near this sphere. Changing the driven bones of an object allocates memory in the next frame.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that its model does
-    /// not have. Nothing changes then.
+    /// not have. If an error is returned, nothing changes.
     pub fn drive(&mut self, instance: InstanceId, bones: &[&str]) -> Result<(), InputError> {
         let bones = bones.iter().map(|bone| Ok(self.bone(instance, bone)? as u32));
         let bones = bones.collect::<Result<Vec<_>, InputError>>()?;
@@ -122,7 +122,7 @@ impl Scene {
     ///
     /// # Examples
     ///
-    /// A head that is turned by 0.3 radians about the vertical axis of the world, whatever its clip does.
+    /// A head that is turned by 0.3 radians about the world's vertical axis, in addition to its clip's motion.
     ///
     /// ```no_run
     /// # use glam::DQuat;
@@ -147,8 +147,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// The errors of [`Scene::record`], and the error of `pose`. The frame is then incomplete: it cannot be drawn, and the
-    /// next frame starts afresh.
+    /// The errors of [`Scene::record`], and the error of `pose`. After an error of `pose`, the frame is incomplete: it cannot
+    /// be drawn, and the next frame starts afresh.
     pub fn record_with(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -22,9 +22,10 @@ pub(super) type Between<'a> =
 
 impl Scene {
     /// Discards all recordings that the device has not executed, and starts everything afresh, as [`Scene::refresh`] does.
-    /// [`Scene::record`] does the same by itself after an encoder was dropped without submission, because the device then
-    /// misses the changes recorded in that encoder. Call this function if you keep encoders that you will not submit: their
-    /// recordings then no longer count as in flight.
+    ///
+    /// If an encoder was dropped without submission, the device misses the changes recorded in that encoder.
+    /// [`Scene::record`] detects this and calls this function itself. Call it yourself if you keep encoders that you will
+    /// not submit. Their recordings no longer count as in flight after the call.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -112,16 +113,18 @@ impl Scene {
     /// [`Renderer::draw`](crate::render::Renderer::draw) refuses a view that the last frame left out: the view's lists may
     /// refer to vertices whose memory was reused.
     ///
-    /// Each call records one frame, even if one submission holds several frames. Every draw uses the frame recorded last
-    /// before it. At most [`FRAMES_IN_FLIGHT`] recordings may await execution. A recording counts until the device has
+    /// Each call records one frame, even if one submission holds several frames. A draw uses the last frame that was
+    /// recorded before it. At most [`FRAMES_IN_FLIGHT`] recordings may await execution. A recording counts until the device has
     /// executed it and wgpu has noticed, in a submission or in [`wgpu::Device::poll`]. You may drop an encoder instead: the
     /// next recording then starts afresh ([`Scene::invalidate`]). Submit recordings in order, because each relies on changes
     /// in earlier recordings. For an empty scene, nothing is recorded or drawn.
     ///
     /// # Errors
     /// [`InputError`] if `views` is empty, for a view of another scene or without a camera, if [`FRAMES_IN_FLIGHT`]
-    /// recordings await execution, and for an encoder of another [`wgpu::Instance`]. wgpu panics for such an encoder. The
-    /// panic is caught, but the program's panic hook sees it. [`crate::gpu::GpuError`], also for the loss of the device.
+    /// recordings await execution, and for an encoder of another [`wgpu::Instance`]. [`crate::gpu::GpuError`], also if the
+    /// device was lost.
+    ///
+    /// wgpu panics for an encoder of another instance. The panic is caught, but the program's panic hook sees it.
     ///
     /// # Examples
     ///
@@ -206,8 +209,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Records all stages. If the stages are timed, each has its own compute pass. With `between`, there are two passes,
-    /// before and after the caller's. Otherwise all stages share one pass.
+    /// Records all stages. If the stages are timed, each has its own compute pass. Otherwise all stages share one pass,
+    /// which `between`, if given, splits in two.
     fn record_stages(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -56,7 +56,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not in this scene, is not terrain, or is terrain that the scene generated; for
     /// more patches than fields; for a patch that is given twice or whose samples exceed the range of `i32`; and for heights
-    /// that are not finite or not in ascending order. Nothing has changed then. [`crate::gpu::GpuError`].
+    /// that are not finite or not in ascending order. In these cases nothing has changed. [`crate::gpu::GpuError`].
     ///
     /// # Examples
     ///
@@ -96,7 +96,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for an object that is not in this scene, is not terrain, or is terrain without a target, and for a
-    /// time outside 0..=1. Nothing has changed then.
+    /// time outside 0..=1. In these cases nothing has changed.
     ///
     /// # Examples
     ///

@@ -127,10 +127,11 @@ impl InstancePose {
         self.set_local(bone, Transform { rotation: turned.to_array().map(|part| part as f32), ..local })
     }
 
-    /// Converts an offset in world units along a bone's axes to bone space, for [`Scene::attach`]. A mesh attached with the
-    /// result is `offset.translation` world units away from the bone's origin. The mesh's size is `offset.scale` times the
-    /// size of its model. This holds for any scale of the instance and of its bones in this pose. Rotations stay unchanged. If a
-    /// bone's scale differs between axes, a rotated mesh is sheared, but each of the mesh's axes has the right length.
+    /// Converts an offset to bone space, for [`Scene::attach`]. `offset` is given along the bone's axes, in world units. A
+    /// mesh attached with the result is `offset.translation` world units away from the bone's origin. The mesh's size is
+    /// `offset.scale` times the size of its model. This holds for any scale of the instance and of its bones in this pose.
+    /// The rotation stays unchanged. If the bone's scale differs between axes, a rotated mesh is sheared, but each of the
+    /// mesh's axes has the right length.
     ///
     /// # Errors
     /// [`InputError`] for a bone that the skeleton does not have or that is scaled by 0, and for an offset that
@@ -201,7 +202,8 @@ mod tests {
         InstancePose::new(&skeleton, Pose { locals, model_matrices }, world_from_model)
     }
 
-    /// If a bone turns, the bones below it turn about its joint by the same rotation in the world, mirrored or not.
+    /// If a bone turns, the bones below it turn about its joint by the same rotation in the world, even if the placement
+    /// mirrors.
     #[test]
     fn bones_turn_about_axes_of_the_world() {
         let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -2.0).normalize(), 0.7);

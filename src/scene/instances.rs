@@ -71,7 +71,7 @@ impl Instances {
         [plain > 0 || self.mirrored == 0, self.mirrored > 0]
     }
 
-    /// Raises the capacity to at least `capacity` instances. Marks all as changed.
+    /// Raises the capacity to at least `capacity` instances. Marks all instances as changed.
     pub fn grow(&mut self, capacity: usize) {
         let before = self.all.len();
         let after = capacity.max(1).next_multiple_of(BLOCK as usize).max(before);

@@ -8,13 +8,13 @@ use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::placement::Play;
 
 impl Scene {
-    /// Plays a clip on a layer, over the base and the layers below, with a weight. At weight 0 the layer has no effect; at
-    /// 1 it replaces everything below on its bones. Layers are counted from 1
+    /// Plays a clip on a layer, over the base and the layers below, with a weight. At weight 0 the layer has no effect.
+    /// At weight 1 it replaces the base and the layers below for all of its bones. Layers are counted from 1
     /// ([`CharacterOptions::layers`](crate::scene::CharacterOptions::layers)). Rotations are blended along the chord
     /// ([`animation::layers`](crate::animation::layers)). Weights of morph targets always come from the base.
     ///
-    /// While a layer has a weight above 0, all bones of the instance are sampled in every frame that shows it. Culling then
-    /// uses a sphere that holds any blend of the model's clips.
+    /// While a layer has a weight above 0, all bones of the instance are sampled in every frame that shows the instance.
+    /// As long as the weight is above 0, culling uses a sphere that holds any blend of the model's clips.
     ///
     /// # Errors
     /// The errors of [`Scene::play`]; [`InputError`] for a layer that the character does not have, and for a weight outside
@@ -113,8 +113,8 @@ impl Scene {
 
     /// The root motion of an instance between two scene times in seconds, extracted from its base clip
     /// ([`CharacterOptions::root_motion`](crate::scene::CharacterOptions::root_motion)). The motion is a rotation about +Y
-    /// and a translation, in model space at the first time. The caller decides how much of it to apply. The instance's
-    /// placement times the motion is the new placement ([`Placement::moved_by`](crate::scene::Placement::moved_by)).
+    /// and a translation, in model space at the first time. The caller decides how much of it to apply.
+    /// [`Placement::moved_by`](crate::scene::Placement::moved_by) applies a motion to a placement.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more, is no character, or has no extracted motion, and for

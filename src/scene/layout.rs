@@ -95,7 +95,7 @@ impl Layout {
     }
 }
 
-/// Errors per level of detail in kernel format. Missing levels get the largest number.
+/// Errors per level of detail in kernel format. Missing levels get the largest `f32`.
 pub(super) fn error_vectors(errors: &[f32]) -> [Vec4; OBJECT_LEVELS as usize / 4] {
     let error = |at: usize| errors.get(at).copied().unwrap_or(f32::MAX);
     std::array::from_fn(|at| Vec4::from_array(std::array::from_fn(|lane| error(4 * at + lane))))

@@ -8,7 +8,8 @@ use crate::shared::lod::budget::MAX_FACTOR;
 use crate::shared::lod::object::{FADE_PROGRESS, NO_RANK, RANKS, object_flags_word};
 use crate::shared::lod::select::MAX_MOTION;
 
-/// Divisor that turns an object's farthest threshold into its `metric_floor`: half of the largest factor of a budget.
+/// An object's farthest threshold, divided by this number, is its `metric_floor`. The number is half of the largest factor
+/// by which a triangle budget may enlarge a metric.
 const FLOOR: f32 = 0.5 * MAX_FACTOR;
 
 /// How the levels of detail of an object are chosen, in every view, and how they change.
@@ -39,12 +40,14 @@ pub struct LevelOfDetail {
     /// How instances change from one level to the next.
     pub transition: Transition,
     /// Hysteresis h: half width of the interval around each threshold in which an instance keeps its level (thesis A,
-    /// section 7.2). It is a fraction of the threshold, at least 0 and below 1. For distances, an instance takes the coarser
-    /// level at (1 + h) times the threshold, and returns to the finer level at (1 − h) times the threshold; sizes likewise.
-    /// Errors never exceed the allowed displacement: a coarser level is taken once its error is at most (1 − h) times the
-    /// allowed displacement. Hysteresis applies where levels change at once or fade in time.
+    /// section 7.2). It is a fraction of the threshold, at least 0 and below 1. With distances, an instance takes the coarser
+    /// level at (1 + h) times the threshold, and returns to the finer level at (1 − h) times the threshold. With
+    /// sizes, which shrink with distance, the two factors change places. With [`Criterion::Error`], hysteresis never makes
+    /// the error exceed the allowed displacement: an instance takes a coarser level once that level's error is at most
+    /// (1 − h) times the allowed displacement. Hysteresis applies only if levels change at once or fade over a time
+    /// ([`Pace::Seconds`]).
     pub hysteresis: f32,
-    /// Factor of the allowed displacement or of the distance, above 0. With 2, levels are chosen as if an instance were
+    /// Factor of the metric (allowed displacement or distance), above 0. With 2, levels are chosen as if an instance were
     /// twice as far away, and errors may reach 2 times [`Quality::pixels`](super::Quality::pixels). Thesis A's *late
     /// switching* (section 7.1) is a factor below 1.
     pub bias: f32,
@@ -68,19 +71,16 @@ pub enum LevelChoice {
 }
 
 /// Strength of the perceptual factors (thesis A, section 6.4). The metric of an instance, which is a distance or an allowed
-/// displacement, is multiplied by 1 + `motion` · v + `periphery` · r. Levels are then chosen as if the instance were further
-/// away.
+/// displacement, is multiplied by 1 + `motion` · v + `periphery` · r. Levels are chosen as if the instance were further away.
 ///
 /// v is the speed of the instance's middle in the picture, in picture heights per second, at most 4. It is 0 if the last
-/// frame did not show the instance. r is the distance between the instance's middle and the picture's middle, in half
-/// picture heights, at most 1. The formula is ours: thesis A gives none.
-/// gives none.
+/// frame did not show the instance. r is the distance between the instance's middle and the picture's middle, as a fraction
+/// of half the picture's height, at most 1. The formula is ours; thesis A gives none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Perceptual {
-    /// Strength of the factor for motion, per picture height and second. At least 0; 0 by default.
+    /// Relative increase of the metric at a speed of one picture height per second. At least 0; 0 by default.
     pub motion: f32,
-    /// Strength of the factor for the periphery, at half a picture height from the picture's middle. At least 0; 0 by
-    /// default.
+    /// Relative increase of the metric at half a picture height from the picture's middle. At least 0; 0 by default.
     pub periphery: f32,
 }
 

@@ -174,7 +174,7 @@ fn on_device(
     Some((([index, generation], chunk), attachment))
 }
 
-/// Index in the scene of the first instance in a character's chunk, and the character's number of bones.
+/// Two numbers: the index of a chunk's first instance in the scene's instance buffers, and the character's number of bones.
 fn first_of(objects: &Slots<Object>, object: [u32; 2], chunk: usize) -> Option<[u32; 2]> {
     let object = objects.get(object)?;
     let bones = object.character()?.model().skeleton.len() as u32;

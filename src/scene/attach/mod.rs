@@ -31,10 +31,10 @@ pub(super) struct Attachments {
     carried: HashMap<InstanceId, Vec<InstanceId>>,
     /// Cache: the path of each sphere that a bone carries.
     paths: HashMap<PathKey, BonePath>,
-    /// One list per chunk that carries a mesh now or carried one before. The key is the slot and generation of the object,
-    /// and the index of the chunk.
+    /// One list per chunk whose characters carry a mesh or carried one before. The key is the slot and generation of the
+    /// object, and the index of the chunk.
     lists: BTreeMap<([u32; 2], usize), List>,
-    /// Number of times that a list was allocated or dropped. Jobs prepared for another number are outdated.
+    /// Version of `lists`: the number of allocations and drops so far. Jobs prepared for another version are outdated.
     pub version: u64,
     /// Version of the layout that the lists were written for; `None` if attachments have changed since.
     written: Option<u64>,
@@ -64,15 +64,16 @@ impl Scene {
     /// transform from mesh space to bone space. From the next frame on, the mesh follows the bone in each frame's pose. The
     /// device computes the pose and the mesh's transform. If the mesh is already attached, it moves to the new bone.
     ///
-    /// The offset is in bone space, so the scales of the character and its bones apply to it. Take a character modelled in
-    /// centimetres and placed with a scale of 0.01: a translation of 1 is a centimetre, and a mesh in metres is a hundredth
-    /// of its size. [`InstancePose::offset_of_world_units`](crate::scene::InstancePose::offset_of_world_units) converts an
-    /// offset in world units to bone space: `scene.pose(character)?.offset_of_world_units(bone, offset)?`.
+    /// The offset is in bone space, so the scales of the character and its bones apply to it. Suppose that a character is
+    /// modelled in centimetres and placed with a scale of 0.01. A translation of 1 is one centimetre, and a mesh modelled in
+    /// metres shrinks to a hundredth of its size.
+    /// [`InstancePose::offset_of_world_units`](crate::scene::InstancePose::offset_of_world_units) converts an offset in world
+    /// units to bone space: `scene.pose(character)?.offset_of_world_units(bone, offset)?`.
     ///
     /// Views cull the mesh together with its character. They use one sphere that holds both in every pose of the clip. The
     /// mesh's level of detail meets [`Quality::pixels`](crate::scene::Quality) for every pose of the bone. While a character
-    /// carries a mesh, all bones of the character are sampled in every frame that shows it. The mesh is therefore in place,
-    /// except for rounding. [`Scene::world_from_model`] returns the mesh's transform. If no view of a frame sees the
+    /// carries a mesh, all of its bones are sampled in every frame that shows the character. The mesh is therefore exactly
+    /// in place, up to rounding. [`Scene::world_from_model`] returns the mesh's transform. If no view of a frame sees the
     /// character, because it is hidden or masked out, the mesh is not drawn either. Despawning the character detaches the
     /// mesh.
     ///
@@ -84,9 +85,9 @@ impl Scene {
     /// Cost: the host samples each clip that the character plays, once per clip and bone.
     ///
     /// # Errors
-    /// [`InputError`] for an instance that does not exist any more, if `mesh` is no mesh or `character` is no character, for
-    /// a bone that the model does not have, and for an offset that is not finite, scales by 0 along all axes,
-    /// or has a rotation of length 0.
+    /// [`InputError`] for an instance that does not exist any more; if `mesh` is no mesh or `character` is no character; for
+    /// a bone that the model does not have; and for an offset that is not finite, scales by 0 along all axes, or has a
+    /// rotation of length 0.
     ///
     /// # Examples
     ///
@@ -251,7 +252,8 @@ impl Scene {
 }
 
 /// Gives an attached mesh the placement and the sphere of its character, so that views select both alike. The mesh's scale
-/// includes the largest enlargement by bone and offset. The scale's x is negated if bone and offset mirror the mesh.
+/// includes the largest factor by which bone and offset enlarge the mesh. The scale's x is negated if bone and offset
+/// together mirror the mesh.
 fn follow(mesh: &mut SceneInstance, leader: &SceneInstance, path: &BonePath, offset: &Transform) {
     let largest = offset.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
     let enlarged = (path.stretch * largest).max(1e-6);

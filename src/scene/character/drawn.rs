@@ -12,7 +12,7 @@ use crate::scene::material::Looks;
 use crate::scene::mesh::{self, MeshDrawable};
 
 impl Character {
-    /// Binds the page buffers of all chunks again, after some of them were replaced.
+    /// Binds the page buffers of all chunks again, after some page buffers were replaced.
     pub(super) fn rebind(
         &self,
         gpu: &Gpu,

@@ -86,7 +86,7 @@ impl CharacterLayer {
         masks.iter().map(|of| Ok(layer(mask(of)?))).collect()
     }
 
-    /// Changes the capacity to `capacity` instances. All of them must be uploaded again.
+    /// Changes the capacity to `capacity` instances. Marks all instances for upload.
     pub fn resize(&mut self, capacity: usize) {
         self.plays.resize(capacity, Playing::REST);
         self.weights.resize(capacity, Weight::default());
@@ -220,8 +220,11 @@ pub(super) struct Reach {
 
 impl Reach {
     /// Computes the bounds of a model. `radii` holds, per bone, the largest distance between the bone and a vertex that
-    /// follows it; `None` without such a vertex. Blends lie between the clips. A root bone therefore stays in the box of its
-    /// positions in all clips. Any other bone is at most as far from its parent as in any clip, in any direction.
+    /// follows it; `None` without such a vertex.
+    ///
+    /// A blended transform lies between the clips' transforms. A root bone therefore stays in the box of its positions in
+    /// all clips. Any other bone stays in a ball around its parent. The ball's radius is the largest distance between bone
+    /// and parent in any clip.
     pub fn new(model: &Model, radii: &[Option<f32>]) -> Self {
         let skeleton = &model.skeleton;
         let mut lengths = vec![[0.0_f32; 2]; skeleton.len()];
@@ -256,8 +259,8 @@ impl Reach {
         BoundingSphere { center: self.center, radius: self.radius }
     }
 
-    /// A sphere around all positions of the sphere `carried` that a bone carries, and the largest factor by which the bone
-    /// enlarges a length.
+    /// Two bounds for a bone: a sphere around all positions of `carried`, a sphere that the bone carries; and the largest
+    /// factor by which the bone enlarges a length.
     pub fn of_bone(&self, bone: usize, carried: &BoundingSphere) -> (BoundingSphere, f32) {
         let (reach, stretch) = self.bones[bone];
         let radius = MARGIN * (reach + stretch * (carried.center.length() + carried.radius));

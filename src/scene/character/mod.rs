@@ -34,7 +34,8 @@ use runtime::{Runtime, Shared};
 #[derive(Debug)]
 pub(super) struct Character {
     merged: Merged,
-    /// Metres of model space per unit of the motion table. The gate uses this table to decide which bones to sample.
+    /// Size of one unit of the motion table, in metres of model space. The gate uses this table to decide which bones to
+    /// sample.
     unit: f32,
     /// Largest displacement of a vertex, in model units, per unit of the influence fade λ ([`Extent::stray`]).
     stray: f32,
@@ -45,7 +46,7 @@ pub(super) struct Character {
     spheres: Vec<BoundingSphere>,
     plays: Vec<Playing>,
     changed: Changed,
-    /// Scene time in seconds from which the device counts its `f32` times.
+    /// Origin of the device's `f32` times, as a scene time in seconds.
     epoch: f64,
     /// Whether the vertex positions of the last frame are kept, for velocities.
     keeps_last: bool,
@@ -60,9 +61,9 @@ pub(super) struct Character {
     runtimes: Vec<Runtime>,
     /// Resources replaced since the last frame.
     replaced: Replaced,
-    /// Whether the device has run out of memory. Chunks are then not divided any more.
+    /// Whether the device has run out of memory. If so, chunks are no longer divided.
     is_memory_short: bool,
-    /// Smallest metric (distance or allowed displacement) of each instance in the last frames, while levels fade over time.
+    /// Per instance: the smallest recent metric (distance or allowed displacement). Used while levels fade over time.
     held: Vec<Held>,
 }
 

@@ -105,7 +105,7 @@ impl Character {
         Ok(pose)
     }
 
-    /// An instance's pose at scene time `now`, from its clip and layers alone.
+    /// An instance's pose at scene time `now`, computed only from its clip and layers.
     pub fn sampled(&self, index: u32, now: f64) -> Result<Pose, InputError> {
         let ClipTime { clip, seconds } = self.clip_time(index, now)?;
         let above = self.layers.iter().map(|layer| {

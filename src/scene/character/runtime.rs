@@ -77,8 +77,8 @@ pub(in crate::scene) struct Runtime {
 }
 
 impl Runtime {
-    /// Creates the chunks for a range of instances, which start afresh. A range is halved until its buffers fit into the
-    /// device's bindings.
+    /// Creates the chunks for a range of instances. All instances start afresh. A range is halved until its buffers fit into
+    /// the device's bindings.
     pub fn all(
         gpu: &Gpu,
         model: &Model,

@@ -1,8 +1,8 @@
 //! Caller-defined kinds of objects, such as grass, particles or imposters.
 //!
 //! A kind consists of a type that implements [`Kind`], and one WGSL text ([`KindProgram`]). The scene selects the instances
-//! of a kind like all others (views, culling, levels of detail, masks), and renderers draw them in every layer. See
-//! `examples/kind/`.
+//! of a kind as it does for built-in kinds (views, culling, levels of detail, masks). Renderers draw them in every layer.
+//! See `examples/kind/`.
 
 mod own;
 
@@ -47,7 +47,7 @@ pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
     /// in each frame.
     ///
     /// # Errors
-    /// The errors of [`KindUploads::write`], and errors of the kind itself. The frame is then not recorded.
+    /// The errors of [`KindUploads::write`], and errors of the kind itself. After an error, the frame is not recorded.
     fn upload(&mut self, frame: &KindFrame, uploads: &mut KindUploads<'_>) -> Result<(), Error> {
         let _ = (frame, uploads);
         Ok(())
@@ -57,11 +57,11 @@ pub trait Kind: Debug + wgpu::WasmNotSendSync + 'static {
     /// ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
     ///
     /// # Errors
-    /// [`crate::gpu::GpuError`], and errors of the kind itself. The scene then stays unchanged.
+    /// [`crate::gpu::GpuError`], and errors of the kind itself. After an error, the scene is unchanged.
     fn rebuild(&self, gpu: &Gpu) -> Result<Box<dyn Kind>, Error>;
 
     /// The first point at which a ray hits an instance, for [`Scene::pick`](crate::scene::Scene::pick); `None` if the ray
-    /// misses. By default, the ray hits the bounding sphere from outside.
+    /// misses. The default is the point at which the ray enters the bounding sphere.
     fn hit(&self, ray: &KindRay) -> Option<KindHit> {
         let sphere = self.bounding_sphere();
         let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
@@ -151,7 +151,7 @@ pub struct KindRay {
 }
 
 impl KindRay {
-    /// The hit of a triangle, from either side; `None` if the ray misses it. `corners` are in model space.
+    /// The point at which the ray hits a triangle, from either side; `None` if it misses. `corners` are in model space.
     pub fn triangle(&self, corners: [DVec3; 3]) -> Option<KindHit> {
         let [a, b, c] = corners;
         let distance = distance_to(corners.map(|corner| corner - self.origin), self.direction)?;
