@@ -6,13 +6,13 @@ use super::layer::Layer;
 use super::output::OutputProgram;
 
 /// Contents of a target's first colour attachments. They decide which layers can be drawn into the target. All kinds except
-/// [`Attachments::Color`] need a depth attachment, and no blending.
+/// [`Attachments::Color`] need a depth attachment, and their colours must have no blending.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Attachments {
     /// One colour in linear light, in a float or normalized format. For [`Layer::Color`] if the target has a colour attachment,
-    /// for [`Layer::Transparent`] if WebGPU can blend the format without features, and for [`Layer::Depth`] if the target has a
-    /// depth attachment.
+    /// for [`Layer::Transparent`] if WebGPU can blend the format without device features, and for [`Layer::Depth`] if the target
+    /// has a depth attachment.
     #[default]
     Color,
     /// Three attachments: normals (`Rgba16Float` or `Rgba32Float`), colours (four floats), and object and instance
@@ -93,7 +93,7 @@ fn is_float(format: Format) -> bool {
         && format.has_color_aspect()
 }
 
-/// Whether WebGPU can blend a format without features.
+/// Whether WebGPU can blend a format without device features.
 pub(super) fn can_blend(format: Format) -> bool {
     let features = format.guaranteed_format_features(wgpu::Features::empty());
     features.flags.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE)

@@ -9,8 +9,8 @@ use crate::InputError;
 
 /// The attachments of the render passes or render bundles into which a [`Renderer`](super::Renderer) draws.
 ///
-/// The renderer writes the first colour attachments. [`Attachments`] says how many, and their contents. Further attachments may
-/// belong to the caller's own draws; the renderer leaves them unchanged.
+/// The renderer writes the first colour attachments. [`Attachments`] decides their number and their contents. Further
+/// attachments may belong to the caller's own draws; the renderer leaves them unchanged.
 ///
 /// # Examples
 ///
@@ -35,9 +35,9 @@ use crate::InputError;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetFormat {
-    /// Colour attachments, at most 8, with `None` where the pass has none. The renderer writes the first ones, as
-    /// [`TargetFormat::attachments`] says, with their blending and write masks. Shading writes values in linear light; a format
-    /// with `Srgb` in its name encodes them. Formats for shading must hold floats or normalized integers.
+    /// Colour attachments, at most 8, with `None` where the pass has none. The renderer writes the first ones, with the blending
+    /// and write mask of each; [`TargetFormat::attachments`] decides their number. Shading writes values in linear light; a
+    /// format with `Srgb` in its name encodes them. Formats for shading must hold floats or normalized integers.
     pub color: Vec<Option<wgpu::ColorTargetState>>,
     /// Contents of the first colour attachments.
     pub attachments: Attachments,
@@ -103,7 +103,7 @@ impl TargetFormat {
         Self::holding(Attachments::Own(output.clone()), formats)
     }
 
-    /// The caller's output, if the target holds one.
+    /// The caller's output whose colours the target holds; `None` for all other attachments.
     pub(super) fn output(&self) -> Option<&OutputProgram> {
         if let Attachments::Own(output) = &self.attachments { Some(output) } else { None }
     }
@@ -143,7 +143,7 @@ impl TargetFormat {
     /// the device.
     ///
     /// # Errors
-    /// [`InputError`] that names the field: no attachment, more than 8 colours, a first colour of integers, a colour or
+    /// [`InputError`] that names the field: no attachment, more than 8 colours, a first colour in an integer format, a colour or
     /// depth attachment whose format is not a colour or depth format, and sample counts other than 1 and 4.
     pub fn validate(&self) -> Result<(), InputError> {
         if self.color.len() > MAX_COLORS {

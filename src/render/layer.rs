@@ -1,9 +1,9 @@
-//! Layers: the data of a scene that a draw writes.
+//! Layers: the kinds of data that a draw of a scene writes.
 
 use crate::scene::specialization::Shown;
 
-/// The data of a scene that a draw writes. [`Attachments`](crate::render::Attachments) says which layers can be drawn into a
-/// target.
+/// The kind of data that a draw of a scene writes. [`Attachments`](crate::render::Attachments) says which layers can be drawn
+/// into a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Layer {
@@ -17,41 +17,43 @@ pub enum Layer {
     /// of their bounding spheres. Equally distant instances are drawn in the order of objects and instances, and the triangles of
     /// an instance in the order of the mesh. Each instance in view takes one draw for each of its parts.
     ///
-    /// Levels of detail that fade ([`Transition`](crate::scene::Transition)) are drawn before these surfaces. Two transitions
-    /// fade over nothing opaque: [`CrossFade`](crate::scene::Transition::CrossFade) and
-    /// [`Alpha`](crate::scene::Transition::Alpha). Their depth is written first, so that only the nearest surface shows and the
-    /// order of instances does not matter.
+    /// Levels of detail that fade ([`Transition`](crate::scene::Transition)) are drawn before these surfaces. In two
+    /// transitions, no opaque level is behind the fading levels: [`CrossFade`](crate::scene::Transition::CrossFade) and
+    /// [`Alpha`](crate::scene::Transition::Alpha). The depth of these levels is written first, so that only the nearest surface
+    /// shows and the order of instances does not matter.
     Transparent,
-    /// Depth alone, for shadow maps, and for a prepass before other layers on the same target. Reliefs write their own depth.
-    /// Instances that fade over nothing opaque are left out of a prepass. Shadow maps show them while their weight is more than a
-    /// half.
+    /// Only depth, for shadow maps, and for a prepass before other layers on the same target. Reliefs write the depth of the
+    /// relief instead of the depth of the mesh. A prepass leaves out instances that fade by
+    /// [`CrossFade`](crate::scene::Transition::CrossFade) or [`Alpha`](crate::scene::Transition::Alpha). Shadow maps show a level
+    /// of these instances while the level's weight is more than a half.
     Depth,
     /// Surface attributes before lighting, with depth, in three colours (a G-buffer).
     ///
     /// - The unit normal (w: 1) in world axes, on the visible side, with normal maps and reliefs applied.
     /// - The linear colour (w: 1) of material, texture and tint.
-    /// - The numbers of [`ObjectId::number`](crate::scene::ObjectId::number) and
-    ///   [`InstanceId::number`](crate::scene::InstanceId::number). `Rg16Uint` keeps the lower 16 bits of each.
+    /// - The object number ([`ObjectId::number`](crate::scene::ObjectId::number)) and the instance number
+    ///   ([`InstanceId::number`](crate::scene::InstanceId::number)). `Rg16Uint` keeps the lower 16 bits of each.
     ///
     /// Pixels without a surface keep the caller's clear value. No object has the number 0.
     Surface,
     /// Screen-space motion since the last frame, with depth, in one colour.
     ///
     /// The unit is the picture's width for x (to the right) and its height for y (downwards). A pixel's last position is its
-    /// position minus this value. The motion of skinned vertices, placements and the camera counts. On reliefs, the value is the
-    /// motion of the point that the ray meets. This layer needs
+    /// position minus this value. The value contains the motion of skinned vertices, of placements and of the camera. On reliefs,
+    /// the value is the motion of the point that the ray meets. This layer needs
     /// [`Scene::keep_motion_history`](crate::scene::Scene::keep_motion_history).
     ///
     /// Vertices keep their identity while a character's level of detail and vertex pages (blocks of 64 skinned vertices) change.
     /// Anything absent from the last frame gets the velocity of a static object:
     ///
     /// - an instance that was just spawned;
-    /// - in model space, the vertices of a character that no view saw, and vertices that the character's level of detail lacked;
-    /// - in model space, all instances of an object whose memory grows because more of it is visible than ever before;
+    /// - the vertices of a character that no view saw, and vertices that the character's level of detail lacked (only in model
+    ///   space);
+    /// - all instances of an object whose memory grows because more of it is visible than ever before (only in model space);
     /// - the camera of a view that was not recorded in the scene's last frame.
     ///
-    /// The cases in model space still have the motion of the placement. Camera jitter counts as motion: subtract the difference
-    /// of the last two jitters. Points behind the last frame's eye have velocity 0.
+    /// "Only in model space" means that the velocity still contains the motion of the placement. Camera jitter counts as motion:
+    /// subtract the difference of the last two jitters. Points behind the last frame's eye have velocity 0.
     Velocity,
     /// Surface positions, with depth, in two colours: the position in world units (w: 1), and the object and instance
     /// numbers as in [`Layer::Surface`].

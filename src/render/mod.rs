@@ -1,7 +1,7 @@
 //! Drawing in the caller's render pass.
 //!
 //! A [`Renderer`] draws a [`Scene`](crate::scene::Scene) through a [`View`](crate::scene::View) into targets of one
-//! [`TargetFormat`]. Engines embed this type. The documentation of [`scene`](crate::scene) begins with the order of calls.
+//! [`TargetFormat`]. Engines embed the renderer. The documentation of [`scene`](crate::scene) begins with the order of calls.
 //!
 //! [`Offscreen`] is a target for programs without a window, and the shortest way to a picture.
 

@@ -82,9 +82,9 @@ impl Offscreen {
     /// A target of `size` pixels. In `format`, no colour attachment may be missing, and depth must be `Depth32Float`.
     ///
     /// # Errors
-    /// [`InputError`] as [`TargetFormat::validate`], for missing colours, for depth formats other than `Depth32Float`, for more
-    /// than one sample of a format that cannot be resolved, and for a size of 0 or beyond the device's limit; [`GpuError`] for
-    /// failures of the device.
+    /// [`InputError`] for a format that [`TargetFormat::validate`] refuses, for missing colours, for depth formats other than
+    /// `Depth32Float`, for more than one sample of a format that cannot be resolved, and for a size of 0 or beyond the device's
+    /// limit; [`GpuError`] for failures of the device.
     pub fn with_format(gpu: &Gpu, size: [u32; 2], format: TargetFormat) -> Result<Self, Error> {
         format.validate()?;
         let depth = format.depth.map(|depth| depth.format);
@@ -172,8 +172,8 @@ impl Offscreen {
 
     /// Draws one frame of a scene through a camera, in full detail, over a linear `background`.
     ///
-    /// The call compiles the pipelines, records a view and its colours, and waits for the device. A program that draws more than
-    /// one frame should keep a [`View`](crate::scene::View) and a [`Renderer`] instead.
+    /// The call compiles the pipelines, records a view, draws its colours, and waits for the device. A program that draws more
+    /// than one frame should keep a [`View`](crate::scene::View) and a [`Renderer`] instead.
     ///
     /// # Errors
     /// [`InputError`] for a target without colour, and the errors of [`View::set`](crate::scene::View::set), [`Scene::record`]

@@ -77,9 +77,9 @@ impl OutputProgram {
     /// resources.
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake in the text, with the path `output:LINE:COLUMN`, both counted from 1. [`InputError`]
-    /// with the path `output.name` for a name that has other characters than lower-case letters and digits, or does not begin
-    /// with a letter.
+    /// [`InputError`] for the first mistake in the text, with the path `output:LINE:COLUMN`. Lines and columns are counted
+    /// from 1. [`InputError`] with the path `output.name` for a name that has other characters than lower-case letters and
+    /// digits, or does not begin with a letter.
     pub fn new(name: &str, source: &str) -> Result<Self, InputError> {
         let is_letter = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit();
         if !name.starts_with(|letter: char| letter.is_ascii_lowercase()) || !name.chars().all(is_letter) {
@@ -99,7 +99,7 @@ impl OutputProgram {
             }
         }
         let least = Program::Own(KindProgram::least()?);
-        // The smallest kind writes no depth of its own, so the members of the output's struct are not needed yet.
+        // Entry points that write no depth do not use the members of the output's struct, which are not known yet.
         let mut generated = least.generated();
         generated.kind.deep = false;
         let moves = ["last_position", "velocity_write"].iter().any(|name| code.contains(name));
@@ -150,7 +150,7 @@ impl OutputProgram {
     }
 }
 
-/// WGSL declarations of the output's colours: the members of its struct `targets`.
+/// WGSL declarations of the output's colours: the members of the struct named `targets`.
 fn members(own: &CallerText<'_>, module: &naga::Module, targets: &str) -> Result<Vec<String>, InputError> {
     let mut found = module.types.iter().filter(|(_, ty)| ty.name.as_deref() == Some(targets));
     let (handle, members) = match found.next() {

@@ -23,7 +23,7 @@ use crate::{Error, InputError};
 use pipelines::{PipelineKey, PipelineSource};
 pub use scene_pass::ScenePass;
 
-/// Draws scenes on targets of one format. Each shadow map and each other format needs its own renderer.
+/// Draws scenes on targets of one format. Each further format needs a renderer of its own, and so does each shadow map.
 ///
 /// # Examples
 ///
@@ -106,9 +106,9 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`, both counted from 1. [`InputError`]
-    /// with the path `shading.layout` for a layout that does not match the text's bindings, or that exceeds the device's limits
-    /// together with the crate's own groups. A browser reports exceeded limits later ([`Scene::health`]).
+    /// [`InputError`] for the first mistake in the text, with the path `shading:LINE:COLUMN`. Lines and columns are counted from
+    /// 1. [`InputError`] with the path `shading.layout` for a layout that does not match the text's bindings, or that exceeds the
+    /// device's limits together with the crate's own groups. A browser reports exceeded limits later ([`Scene::health`]).
     /// [`crate::gpu::GpuError`] for other failures of the device.
     pub fn with_shading(self, source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, Error> {
         let shading = Shading::new(source, layout)?;
@@ -190,9 +190,9 @@ impl Renderer {
     /// Each object takes one indirect draw per part and level. The number doubles if only some of the object's instances are
     /// mirrored, and doubles again if its levels fade.
     ///
-    /// A render bundle that is executed in a later frame shows the view's latest recording. Nothing checks then whether the last
-    /// frame recorded the view. Record the bundle anew after objects were added or grew, after materials changed, and when an
-    /// object gets its first mirrored or its first unmirrored instance.
+    /// A render bundle that is executed in a later frame shows the view's latest recording. For a bundle, nothing checks whether
+    /// the last frame recorded the view. Record the bundle anew after objects were added or grew, after materials changed, and
+    /// when an object gets its first mirrored or its first unmirrored instance.
     ///
     /// # Errors
     /// [`InputError`] for:
@@ -319,7 +319,7 @@ impl Renderer {
         lists.into_iter().chain(hiding).map(|list| list.fade).collect()
     }
 
-    /// Draws the parts of an object. `lists` gives the instance lists to draw of a part.
+    /// Draws the parts of an object. `lists` returns the instance lists of a part that are drawn.
     fn draw_object<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -335,7 +335,7 @@ impl Renderer {
         }
     }
 
-    /// Draws parts of single instances in the host's order, from back to front.
+    /// Draws blended parts instance by instance, from back to front. The host has sorted them.
     fn draw_sorted<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -373,7 +373,7 @@ impl Renderer {
         self.pipelines.get(&self.key(layer, part, is_flipped, view.is_shadowed).fading(fade))
     }
 
-    /// Draws one part of an object, given by its index and value, from these lists.
+    /// Draws one part of an object from these lists. `index` is the index of `part` in the object.
     fn draw_part<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,
@@ -406,12 +406,12 @@ struct ListDraw {
     layer: Layer,
     /// How the instances fade.
     fade: Fade,
-    /// Whether the lists of fading instances are drawn, instead of the others.
+    /// Whether the lists of fading instances are drawn. Otherwise, the lists of instances that do not fade are drawn.
     is_fading: bool,
 }
 
-/// The depth draw before a part is blended, which hides the part's inside and instances that fade behind it. `None` for a level
-/// that is blended over an opaque level.
+/// The draw that writes a part's depth before the part is blended. It hides the part's inside, and instances that fade behind the
+/// part. `None` for a level that is blended over an opaque level.
 fn hiding(part: &Specialization, transition: Transition) -> Option<ListDraw> {
     let fade = match transition {
         Transition::Alpha { .. } => Fade::None,
@@ -422,12 +422,12 @@ fn hiding(part: &Specialization, transition: Transition) -> Option<ListDraw> {
     (!part.state().blended).then_some(depth)
 }
 
-/// How a sorted draw of an object with this transition fades.
+/// The fade of instances that are drawn one by one, for an object with this transition.
 fn sorted_fade(transition: Transition) -> Fade {
     if matches!(transition, Transition::Alpha { .. }) { Fade::Blend } else { Fade::None }
 }
 
-/// Draws one part from the lists of all levels. The two flags choose mirrored or unmirrored instances, and fading or other ones.
+/// Draws one part from the lists of all levels. The two flags choose the lists: mirrored or unmirrored, fading or not fading.
 fn draw_lists<'a>(
     pass: &mut impl ScenePass<'a>,
     view: &DrawnView<'a>,

@@ -34,7 +34,7 @@ impl Shading {
     /// Checks the WGSL of a shading. Without a layout, the text must not bind resources.
     ///
     /// # Errors
-    /// [`InputError`] whose path is `shading:LINE:COLUMN`, both counted from 1.
+    /// [`InputError`] whose path is `shading:LINE:COLUMN`. Lines and columns are counted from 1.
     pub fn new(source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, InputError> {
         let text = with_structures(source);
         let own = Own(CallerText { path: "shading", source, text: &text });
@@ -57,7 +57,7 @@ impl Shading {
     }
 
     /// Checks the layout of bind group 3 against the text's bindings, and against the device's limits together with the crate's
-    /// own groups. For this, the text is compiled alone. In a browser, the device reports errors later.
+    /// own groups. For these checks, the text is compiled alone. In a browser, the device reports errors later.
     ///
     /// # Errors
     /// [`InputError`] for `shading.layout`, with wgpu's message; [`GpuError`] for other failures of the device.

@@ -13,18 +13,18 @@ use crate::scene::object::Object;
 use crate::{Error, InputError};
 
 impl Scene {
-    /// Replaces a material of a mesh or a character. `material` is the material's name, or its index in the model in
-    /// digits. All instances show the new material from the next frame on. A material refers to images by their index
+    /// Replaces a material of a mesh or a character. `material` is the material's name, or the digits of its index in
+    /// the model. All instances show the new material from the next frame on. A material refers to images by their index
     /// in the model; [`Scene::set_image`] replaces images and adds others.
     ///
-    /// A change of colour, cutoff or normal scale only writes into buffers. So does a change to a texture that is
-    /// already uploaded for this material or for a material drawn together with it. Any other texture or sampling is
-    /// uploaded at once, with all textures of these materials. This allocates memory, and render bundles must be
-    /// recorded again.
+    /// A change of colour, cutoff or normal scale only writes into buffers. The same is true for a change to a texture
+    /// that is already uploaded for this material or for a material drawn together with it. For any other texture or
+    /// sampling, all textures of these materials are uploaded at once. This allocates memory, and render bundles must
+    /// be recorded again.
     ///
     /// Some changes may need a pipeline that a renderer has not compiled: the first material with [`Alpha::Mask`] or
-    /// [`Alpha::Dithered`] among opaque ones, and the first with a normal map. The same holds for adding the first
-    /// texture to a material that is drawn alone, or removing the last one. After such a change, call
+    /// [`Alpha::Dithered`] among opaque ones, and the first with a normal map. The same holds for a material that is
+    /// drawn alone: adding its first texture, or removing its last one. After such a change, call
     /// [`Renderer::prepare`](crate::render::Renderer::prepare). Without this call,
     /// [`Renderer::draw`](crate::render::Renderer::draw) reports that the object is not compiled.
     ///
@@ -116,7 +116,7 @@ impl Scene {
         set
     }
 
-    /// A material of a mesh or a character. `material` is the material's name, or its index in the model in digits.
+    /// A material of a mesh or a character. `material` is the material's name, or the digits of its index in the model.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, and for a material that the model

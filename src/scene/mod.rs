@@ -285,7 +285,7 @@ impl Scene {
     /// this once a frame.
     ///
     /// # Errors
-    /// Those of [`Gpu::check`].
+    /// The errors of [`Gpu::check`].
     ///
     /// # Examples
     ///

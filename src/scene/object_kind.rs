@@ -78,8 +78,8 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
     /// Creates the kind's resources on another device, with the materials and the capacity in `target`.
     fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a>;
 
-    /// Takes over the kind's resources that were made on another device ([`OnDevice::other`]). Chunks are not among
-    /// them.
+    /// Takes over the kind's resources that were made on another device, except the chunks
+    /// ([`OnDevice::other`]).
     fn adopt(&mut self, other: Box<dyn Made>) {
         let _ = other;
     }
@@ -89,7 +89,7 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         let _ = keeps;
     }
 
-    /// The kind's resources for one view, bound there as group 1. `None` if group 1 is the same in all views. `number`
+    /// The kind's resources for one view, which the view binds as group 1. `None` if group 1 is the same in all views. `number`
     /// is the object's number.
     fn in_view(
         &self,

@@ -313,7 +313,7 @@ impl Scene {
     pub fn show(&mut self, object: ObjectId, is_shown: bool) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
         if std::mem::replace(&mut entry.is_shown, is_shown) != is_shown {
-            // Writes only the entries of this object. A new layout would write those of all objects.
+            // Writes only the entries of this object. A new layout would write the entries of all objects.
             let entries = entry.chunks.iter().map(|chunk| (chunk.number, entry.lod_object(chunk)));
             let entries: Vec<_> = entries.collect();
             if let Some(layout) = &self.layout {
@@ -326,7 +326,7 @@ impl Scene {
     }
 
     /// Sets how an object's levels of detail are chosen and change, from the next recording on. After a change of the
-    /// transition, compile the renderers again ([`Renderer::prepare`](crate::render::Renderer::prepare)).
+    /// transition, prepare the renderers again ([`Renderer::prepare`](crate::render::Renderer::prepare)).
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, and for settings that [`LevelOfDetail::validate`]

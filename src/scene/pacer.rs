@@ -20,9 +20,9 @@ const LEAST: f32 = 1e3;
 /// Adjusts a triangle limit so that frames take a given time.
 ///
 /// Frame times are averaged over some frames. If the average exceeds the time limit, or is shorter by more than a
-/// twentieth, the triangle limit is multiplied by the square root of their ratio. This factor is bounded, so that the
-/// triangle limit falls faster than it rises. So the triangle limit settles from one side, and does not oscillate
-/// around a level of detail that takes too long.
+/// twentieth, the triangle limit is multiplied by a factor: the square root of the time limit over the average. This
+/// factor is bounded, so that the triangle limit falls faster than it rises. So the triangle limit settles from one
+/// side, and does not oscillate around a level of detail that takes too long.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pacer {
     limit: Option<f32>,

@@ -14,7 +14,7 @@ use crate::shared::lod::object::{FADE_PROGRESS, object_flags_criterion, object_f
 use crate::shared::lod::view::POSITION_SLACK;
 use crate::skinning::pages::{KEEPING_PAGE_BYTES, PAGE_BYTES};
 
-/// Memory for the first pages of a mesh, in bytes (4 MiB). If that suffices for all instances in full detail, the mesh
+/// Memory for the first pages of a mesh, in bytes (4 MiB). If this memory suffices for all instances in full detail, the mesh
 /// never needs more.
 const SMALL: usize = 4 << 20;
 

@@ -172,7 +172,7 @@ pub(super) fn check_world(path: &str, cell: [i32; 3], offset: Vec3) -> Result<()
 /// A clip that a character plays, with its start, rate and wrap mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Play<'a> {
-    /// The clip's name, or its index in the model in digits, counted from 0. A clip without a name in its file is called
+    /// The clip's name, or the digits of its index in the model (counted from 0). A clip without a name in its file is called
     /// `animation_` followed by its index.
     pub clip: &'a str,
     /// The scene time at which the clip starts, in seconds. A clip with a start in the past is already under way.

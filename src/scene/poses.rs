@@ -16,7 +16,7 @@ pub struct PoseBuffers<'a> {
     /// translation and the scale along x. The second holds the rotation, a unit quaternion (x, y, z, w). The third
     /// holds the scale along y and z in its first two components. Use: read-write storage.
     pub locals: &'a Buffer<Local>,
-    /// The model matrix of each bone in the frame before: the transform from bone space to model space. A matrix has
+    /// The model matrix of each bone in the previous frame: the transform from bone space to model space. A matrix has
     /// three rows, each a `vec4<f32>`, from index 3 · (instance · bones + bone) on. Use: read-only storage.
     pub model_matrices: &'a wgpu::Buffer,
     /// Number of bones of the skeleton.

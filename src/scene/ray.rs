@@ -16,8 +16,8 @@ use crate::skinning::merged::Merged;
 pub struct Ray {
     /// Index of a cell. `offset` is relative to the corner of this cell; see [`Placement`].
     pub cell: [i32; 3],
-    /// The start of the ray in world units, relative to the cell's corner. For cell (0, 0, 0), these are world
-    /// coordinates.
+    /// The start of the ray in world units, relative to the cell's corner. For cell (0, 0, 0), `offset` is
+    /// in world coordinates.
     pub offset: DVec3,
     /// The direction of the ray, of any length except 0.
     pub direction: DVec3,

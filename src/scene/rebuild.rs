@@ -8,7 +8,7 @@ use crate::scene::statistics::StageTimer;
 use crate::scene::{FRAMES_IN_FLIGHT, Passes, Scene};
 
 /// A type whose device resources can be recreated after the scene's device was lost: a [`View`](crate::scene::View), a
-/// [`Renderer`](crate::render::Renderer), a [`SunShadow`](crate::render::SunShadow), or a type of the caller's.
+/// [`Renderer`](crate::render::Renderer), a [`SunShadow`](crate::render::SunShadow), or a type of the caller.
 pub trait Rebuild {
     /// Recreates all device resources on the new device of a rebuilt scene.
     ///
@@ -28,9 +28,9 @@ impl Scene {
     /// [`Renderer::rebuild_with_layout`]: crate::render::Renderer::rebuild_with_layout
     ///
     /// # Errors
-    /// If [`Scene::rebuild`] fails, its error; nothing has changed then. Otherwise, the first error of a part, with a
-    /// path that starts with `parts[0]`, `parts[1]` and so on. The scene and the parts before the failed part are then
-    /// rebuilt; all other parts are not.
+    /// The error of [`Scene::rebuild`]. After this error, nothing has changed. Otherwise, the first error of a part,
+    /// with a path that starts with `parts[0]`, `parts[1]` and so on. After this error, the scene and the parts before
+    /// the failed part are rebuilt; all other parts are not.
     ///
     /// # Examples
     ///
@@ -84,7 +84,7 @@ impl Scene {
     /// valid. Placements, clips, times, attachments and all other settings are kept. The next frame starts afresh, as
     /// after [`Scene::refresh`]. If the rebuild fails, the scene stays unchanged.
     ///
-    /// Views, renderers and shadows must be rebuilt, too: with [`View::rebuild`](crate::scene::View::rebuild),
+    /// Views, renderers and shadows must also be rebuilt: with [`View::rebuild`](crate::scene::View::rebuild),
     /// [`Renderer::rebuild`](crate::render::Renderer::rebuild) and
     /// [`SunShadow::rebuild`](crate::render::SunShadow::rebuild). [`Scene::rebuild_all`] calls all of these functions.
     ///

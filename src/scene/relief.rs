@@ -39,7 +39,8 @@ pub struct Relief {
     /// Method, shadows and silhouette. With [`ReliefSource::Textures`], the method must be the one that the textures
     /// were made for.
     pub options: ReliefOptions,
-    /// Depth, plane and width of shadows. The material's light is ignored, because a scene has one light.
+    /// Depth and plane of the relief, and softness of its shadows. The material's light is ignored, because a scene has
+    /// one light.
     pub material: ReliefMaterial,
     /// Settings of the ray march, and the address mode beyond the edges of the maps.
     pub march: March,
@@ -61,8 +62,8 @@ pub enum ReliefSource {
         normals: Option<image::RgbaImage>,
     },
     /// Textures on the device, which several objects and the caller may share. Use them for heights that are computed
-    /// on the device, or for colours in linear half floats ([`ColorTexture::linear`]). No driver decodes such colours
-    /// from sRGB.
+    /// on the device, or for colours in linear half floats ([`ColorTexture::linear`]). Such colours do not depend
+    /// on the driver's sRGB decoding.
     Textures {
         /// The heights, and the acceleration map of a method.
         textures: Box<SurfaceTextures>,
@@ -76,7 +77,7 @@ pub enum ReliefSource {
 impl Relief {
     /// An upright square wall that faces +Z and is centred at the model's origin. Its edge is one unit of the model.
     /// The maps repeat `tiles` times along each edge, with their top edge upwards. The back of the wall is drawn only
-    /// if `double_sided` is set. All other fields are those of [`Relief::new`].
+    /// if `double_sided` is set. All other fields are as in [`Relief::new`].
     pub fn wall(tiles: f32, heights: HeightMap, albedo: image::RgbaImage) -> Self {
         Self::new(SurfaceMesh::square(tiles), heights, albedo)
     }
@@ -88,8 +89,8 @@ impl Relief {
     }
 
     /// A relief on a mesh that shares the caller's textures. It is drawn by the method for which the textures were
-    /// made, with normals from the heights, and writes the depth of the relief. The address mode is that of the
-    /// textures.
+    /// made, with normals from the heights, and writes the depth of the relief. The textures also
+    /// decide the address mode.
     pub fn of_maps(mesh: SurfaceMesh, maps: ReliefMaps<'_>) -> Self {
         let ReliefMaps { textures, albedo, normals } = maps;
         let (method, address) = (textures.method, textures.address);

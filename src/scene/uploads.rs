@@ -12,8 +12,8 @@ impl Scene {
     ///
     /// Use a budget if the program adds objects while it runs, so that no single frame becomes visibly long. Meshes,
     /// clips and textures then wait on the host, object by object. An object is drawn, and hit by rays
-    /// ([`Scene::pick`]), once all of its data has arrived. Before that, it can already be changed, and instances can
-    /// be spawned.
+    /// ([`Scene::pick`]), once all of its data has arrived. Before that, the object can already be changed, and its
+    /// instances can be spawned.
     ///
     /// A frame uploads whole rows of textures, so it may exceed the budget by up to one row. The call that adds an
     /// object still does some work at once: on the host (mip levels, bounds of motion) and on the device (heights of

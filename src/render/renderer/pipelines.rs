@@ -93,7 +93,7 @@ pub(super) struct PipelineSource {
     fragment: Option<String>,
     /// Override constants of the shader: name, and bits of the `f64` value.
     constants: Vec<(&'static str, u64)>,
-    /// The faces of triangles that are culled; `None` for both sides drawn.
+    /// The side of triangles that is culled; `None` if both sides are drawn.
     cull: Option<wgpu::Face>,
 }
 
@@ -101,7 +101,7 @@ impl PipelineSource {
     /// Compiles the pipeline, with the caller's shading if there is one.
     ///
     /// # Errors
-    /// Errors of the driver's shader compiler, and of a format that exceeds the device's limits.
+    /// Errors of the driver's shader compiler, and errors for a format that exceeds the device's limits.
     pub fn compiled(
         &self,
         gpu: &Gpu,
@@ -163,7 +163,7 @@ impl PipelineSource {
     }
 }
 
-/// The only vertex buffer: the list entry of each instance of a draw, one word.
+/// The only vertex buffer. It has one word for each instance of a draw: the list entry of the instance.
 const INSTANCES: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<u32>() as u64,
     step_mode: wgpu::VertexStepMode::Instance,

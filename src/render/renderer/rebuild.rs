@@ -12,8 +12,8 @@ impl Rebuild for Renderer {
 }
 
 impl Renderer {
-    /// Compiles the renderer's pipelines again on another device, after its device was lost. The scene must be rebuilt on
-    /// that device too ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
+    /// Compiles the renderer's pipelines again on another device, after its device was lost. The scene must also be
+    /// rebuilt on that device ([`Scene::rebuild`](crate::scene::Scene::rebuild)).
     ///
     /// # Errors
     /// [`InputError`] for the caller's shading with a bind group layout, because the layout was lost with the device

@@ -1,7 +1,7 @@
 //! The encoders that a renderer records into: a render pass or a render bundle.
 
-/// A render pass, or the encoder of a render bundle. A render pass does not borrow the drawn resources, so passes
-/// without a lifetime ([`wgpu::RenderPass::forget_lifetime`]) work too.
+/// A render pass, or the encoder of a render bundle. A render pass does not borrow the drawn resources, so it may be
+/// a pass without a lifetime ([`wgpu::RenderPass::forget_lifetime`]).
 pub trait ScenePass<'a>: sealed::Sealed {
     /// Sets the pipeline of the next draws.
     fn set_pipeline(&mut self, pipeline: &'a wgpu::RenderPipeline);

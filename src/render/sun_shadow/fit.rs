@@ -6,7 +6,7 @@ use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
 use crate::InputError;
 use crate::scene::{Camera, Depth, Placement};
 
-/// Limit of casters: distance from the map's center towards the light, in map radii.
+/// The largest distance of a caster from the map's center towards the light, in map radii.
 const REACH: f64 = 7.0;
 
 /// Fraction of the map's radius over which shadows fade (`SHADOW_FADE` of `wgsl/render/scene_shadow.wgsl`), plus some
@@ -23,15 +23,15 @@ const HALVINGS: usize = 48;
 /// The eight corners of a camera's view volume up to a distance.
 #[derive(Debug, Clone)]
 pub(super) struct Frustum {
-    /// Four corners on the near plane, then four at the far end, in camera space. There they do not depend on the camera's
-    /// position, to the bit.
+    /// Four corners on the near plane, then four at the far end, in camera space. In this space, the corners do not depend on
+    /// the camera's position, not even in the last bit.
     corners: [[DVec3; 4]; 2],
     /// Transform from camera space to the world.
     world_from_view: DMat4,
 }
 
 impl Frustum {
-    /// The view volume up to `range` units ahead of the camera, or up to the far plane if it is nearer.
+    /// The view volume up to `range` units ahead of the camera, or up to the far plane if that is nearer.
     ///
     /// # Errors
     /// [`InputError`] for a range that ends before the near plane.
@@ -77,7 +77,7 @@ pub(super) struct Fit {
 }
 
 impl Fit {
-    /// Fits a map of `size` texels an edge around at least one view volume, for a light from `direction`.
+    /// Fits a map of `size` × `size` texels around one or more view volumes, for a light from `direction`.
     pub fn new(frusta: &[Frustum], direction: Vec3, size: u32) -> Self {
         let (middle, radius) = sphere(frusta);
         let steps = (STEPS * libm::log2(radius / (1.0 - FADE))).ceil() / STEPS;
@@ -93,7 +93,7 @@ impl Fit {
 fn camera(axes: DMat3, middle: DVec3, radius: f64, size: u32) -> Camera {
     let edge = f64::from(Placement::CELL);
     let cell = (axes * middle / edge).floor();
-    // The eye lies at the casters' distance limit.
+    // The eye lies at the largest distance of a caster.
     let eye = middle + DVec3::Z * (REACH * radius) - axes.transpose() * (cell * edge);
     let view = DMat4::from_translation(-eye) * DMat4::from_mat3(axes.transpose());
     let far = (REACH + 1.0) * radius;
@@ -121,8 +121,8 @@ fn axes(direction: Vec3) -> DMat3 {
     DMat3::from_cols(right, towards.cross(right), towards)
 }
 
-/// Center in the world and radius of a sphere around all corners. The center lies on the line from the mean of the near corners
-/// to the mean of the far corners, where the radius is smallest.
+/// A sphere around all corners: its center in the world, and its radius. The center lies on the line from the mean of the near
+/// corners to the mean of the far corners, at the point with the smallest radius.
 fn sphere(frusta: &[Frustum]) -> (DVec3, f64) {
     let first = frusta[0].world_from_view;
     let view_from_world = first.inverse();
@@ -216,7 +216,7 @@ mod tests {
                 let fit = fitted(&[moved(eye(from, to))], 40.0);
                 assert_eq!(fit.texel.to_bits(), first.texel.to_bits());
                 let by = texels(&fit, place) - before;
-                // Rounding of f32 matrices at coordinates of a few hundred units.
+                // The bound allows for the rounding of f32 matrices at coordinates of a few hundred units.
                 let off = (by - by.round()).truncate().abs().max_element();
                 assert!(off < 0.01, "{off} texels after {at} steps, {far} cells away");
                 steps += usize::from(by.truncate().abs().max_element() > 0.5);

@@ -17,13 +17,14 @@ const LEAST_SIZE: u32 = 16;
 
 /// A shadow map for a scene's light: the map, its camera, and its renderer.
 ///
-/// The map holds the depth of the first caster that the light meets. In every frame, [`SunShadow::fit`] places it
-/// around what the views show up to a distance, and [`SunShadow::draw`] draws it.
+/// The map holds the depth of the first caster that the light meets. In every frame, [`SunShadow::fit`] places the
+/// map around everything that the views show up to a distance, and [`SunShadow::draw`] draws the map.
 ///
 /// Casters are all instances that cast ([`Scene::set_casts_shadow`]) and share a bit with the mask of [`SunShadow::set_mask`].
-/// Casters outside of the views count too, up to three map widths away towards the light. Triangles stop light from both sides,
-/// reliefs with their own depth, and cut-out surfaces where they are opaque. Blended surfaces cast no shadow. All surfaces
-/// receive shadow: in the crate's shading, and as `Surface.sunlit` in the caller's shading ([`Renderer::with_shading`]).
+/// This includes casters outside the views, up to three map widths away towards the light. Triangles stop light from both sides.
+/// Reliefs cast shadows with the depth of the relief, and cut-out surfaces only where they are opaque. Blended surfaces cast no
+/// shadow. All surfaces receive shadow: in the crate's shading, and as `Surface.sunlit` in the caller's shading
+/// ([`Renderer::with_shading`]).
 ///
 /// A texel covers 1/`size` of the map's width, about 1.8 `range` / `size` for a field of view of 0.8. Shadow edges are
 /// about two texels wide. A caster closer than three texels to a surface may not shade it. Shadows are stable while the
@@ -65,8 +66,8 @@ pub struct SunShadow {
 }
 
 impl SunShadow {
-    /// A map of `size` × `size` texels (2048, say), and pipelines for the scene's objects. From now on all renderers of
-    /// the scene look up the shadow: prepare them afterwards.
+    /// A map of `size` × `size` texels (2048, say), and pipelines for the scene's objects. From now on, all renderers of
+    /// the scene look up the shadow. Prepare them after this call.
     ///
     /// # Errors
     /// [`InputError`] for a size below 16 or above the device's limit of textures; errors of the driver's shader compiler.
@@ -192,7 +193,7 @@ impl SunShadow {
             ..Default::default()
         });
         let drawn = self.renderer.draw(&mut pass, scene, &self.view, Layer::Depth);
-        // The caller reaches the light's view under this name.
+        // For the caller, the light's view has the name `shadow.view()`.
         drawn.map_err(|error| match error.path.as_str() {
             "view" => InputError { path: "shadow.view()".to_owned(), ..error },
             _ => error,

@@ -110,7 +110,7 @@ impl PartMaterials {
     }
 
     /// Makes the part's materials again after `looks` has changed. If no texture or sampling is new, only the table
-    /// changes. A new texture, a new sampling or `anew` makes all textures be uploaded again.
+    /// changes. With a new texture, a new sampling or `anew`, all textures are uploaded again.
     ///
     /// # Errors
     /// As for [`PartMaterials::new`].
@@ -189,7 +189,7 @@ impl Changed {
     }
 }
 
-/// The material table of a part. Images that are not yet in `colors` or `normals` are appended there.
+/// The material table of a part. Images that are not yet in `colors` or `normals` are appended to them.
 fn table(
     looks: &Looks,
     materials: &[Option<usize>],
@@ -212,7 +212,7 @@ const WHITE: SceneMaterial = SceneMaterial {
     normal_scale: 1.0,
 };
 
-/// The layers of a texture array: for each layer, the index of the object's image in it.
+/// The layers of a texture array. For each layer: the index of its image among the object's images.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Layers {
     images: Vec<usize>,

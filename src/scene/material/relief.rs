@@ -21,7 +21,8 @@ pub(crate) struct ReliefBindings {
 /// Parameters of a relief, without its maps and options.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReliefLook {
-    /// Depth, plane and width of shadows. The material's light is ignored, because the scene has one light.
+    /// Depth and plane of the relief, and softness of its shadows. The material's light is ignored, because the scene
+    /// has one light.
     pub material: ReliefMaterial,
     /// Settings of the ray march.
     pub march: March,

@@ -31,8 +31,8 @@ pub fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputEr
     check(model)?;
     let mut rest = at_rest(model).map_err(|error| error.below("model"))?;
     if model.clips.is_empty() {
-        // Without clips, levels of detail were made for the rest pose, and vertices keep their order. So they stay
-        // valid.
+        // The levels of a model without clips were made for the rest pose, and vertices keep their order. So the
+        // levels stay valid.
         for (mesh, from) in rest.meshes.iter_mut().zip(&model.meshes) {
             mesh.levels.clone_from(&from.levels);
             mesh.partners.clone_from(&from.partners);
@@ -88,7 +88,7 @@ pub(super) fn check_binding(gpu: &Gpu, mesh: &Mesh) -> Result<(), InputError> {
     all.into_iter().try_for_each(|(path, count, bytes)| within_binding(gpu, path, count, bytes))
 }
 
-/// Checks that `count` elements of `bytes` bytes each fit one binding of the device. `path` names the count in errors.
+/// Checks that `count` elements, of `bytes` bytes each, together fit one binding of the device. `path` names the count in errors.
 pub(super) fn within_binding(gpu: &Gpu, path: &str, count: usize, bytes: usize) -> Result<(), InputError> {
     let most = gpu.max_binding() / bytes as u64;
     if count as u64 <= most {

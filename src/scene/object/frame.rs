@@ -108,7 +108,7 @@ fn stage_instances(
 }
 
 /// The largest distance along a view ray between the surfaces of two levels, as a multiple of the coarser level's
-/// error. It holds for surfaces that are seen at up to 70 degrees from their normal.
+/// error. This bound holds for surfaces that are seen at up to 70 degrees from their normal.
 const PUSHED_ERRORS: f32 = 3.0;
 
 /// Stages the uniforms of a chunk's drawables. `number` is the object's number; `errors` are the errors of its levels.
@@ -133,8 +133,8 @@ pub(in crate::scene) fn laid_out(
 ) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
     let (mut all, mut draws, mut sorted) = (Vec::new(), Vec::new(), Vec::new());
-    // The triangle unit keeps sums of triangles over all instances below 2^31. With both levels of all fades, they stay
-    // below 2^32.
+    // The triangle unit keeps sums of triangles over all instances below 2^31. With both levels of all fades, the sums
+    // stay below 2^32.
     let most = |object: &Object| {
         let triangles = object.triangles().first().copied().unwrap_or(0);
         object.capacity().next_multiple_of(BLOCK as usize) as u64 * u64::from(triangles)

@@ -232,7 +232,7 @@ fn signature(name: &str, what: &str) -> String {
 
 impl CallerText<'_> {
     /// Makes an error of naga understandable. A type mismatch outside the caller's text is in a generated entry point.
-    /// The cause is a function of the caller with a wrong signature, which that entry point calls.
+    /// The cause is that this entry point calls a function of the caller that has a wrong signature.
     fn explained(&self, name: &str, error: InputError) -> InputError {
         let end = self.refused(std::iter::empty(), String::new());
         let is_of_types = ["Call to", "type"].iter().any(|word| error.bound.contains(word));

@@ -21,7 +21,7 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::texture::TerrainTexture;
 use crate::{Error, InputError};
 
-/// Number of samples beyond each edge of a generated patch. Shading reads one of them.
+/// Number of samples beyond each edge of a generated patch. One is enough for shading.
 pub(super) const MARGIN: u32 = 1;
 
 /// Creates terrain: data on the host, one instance per patch, and drawables. The heights are in parts that each fit one

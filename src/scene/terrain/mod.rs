@@ -58,7 +58,7 @@ impl Terrain {
     /// Blends the heights of the two recipes by `morph`, on the host at once and on the device in the next frame.
     ///
     /// # Errors
-    /// [`InputError`] for terrain without a target, and for a time out of range. Nothing has changed then.
+    /// [`InputError`] for terrain without a target, and for a time out of range. After an error, nothing has changed.
     pub fn morph(&mut self, instances: &mut Instances, morph: Morph) -> Result<(), InputError> {
         morph.validate()?;
         let (Some(morphing), Some((_, current))) = (&mut self.morphing, &mut self.source.target) else {
@@ -86,8 +86,8 @@ impl Terrain {
     /// Patches that stay in place keep their handles and their known heights.
     ///
     /// # Errors
-    /// [`InputError`] for terrain that the scene generated, and for patches or heights out of range. Nothing has changed
-    /// then.
+    /// [`InputError`] for terrain that the scene generated, and for patches or heights out of range. After an error,
+    /// nothing has changed.
     pub fn show(
         &mut self,
         instances: &mut Instances,

@@ -48,8 +48,8 @@ impl TerrainSource {
     ///
     /// The scene shares the buffer of the fields without a copy. Each frame draws the heights that are in the buffer
     /// when the frame executes. After passes have changed the heights, call
-    /// [`Scene::read_ground`](crate::scene::Scene::read_ground). It updates the heights on the host, by which patches
-    /// are culled and queries about the ground are answered. To show other patches, call
+    /// [`Scene::read_ground`](crate::scene::Scene::read_ground). It updates the heights on the host. These heights decide
+    /// which patches are culled, and how queries about the ground are answered. To show other patches, call
     /// [`Scene::set_patches`](crate::scene::Scene::set_patches).
     ///
     /// A [`Generator`](crate::terrain::generator::Generator) or a [`HeightBatch`](crate::terrain::height::HeightBatch)
@@ -102,8 +102,8 @@ impl TerrainSource {
         Self { style, ..self }
     }
 
-    /// Adds a second recipe, towards which the heights are blended. Its samples must be in the same places as those of
-    /// the first recipe. `morph` is the initial blend; [`Scene::morph_terrain`](crate::scene::Scene::morph_terrain)
+    /// Adds a second recipe, towards which the heights are blended. Its samples must be in the same places as the
+    /// samples of the first recipe. `morph` is the initial blend; [`Scene::morph_terrain`](crate::scene::Scene::morph_terrain)
     /// changes it. Zones and textures are taken from the first recipe.
     #[must_use]
     pub fn with_target(self, target: Recipe, morph: Morph) -> Self {

@@ -63,9 +63,9 @@ impl Scene {
 
 impl View {
     /// Reports how long a frame with this view took, in milliseconds. The view then adapts its triangles to
-    /// [`Quality::milliseconds`](crate::scene::Quality::milliseconds). The time may be that of the whole frame, or of
-    /// the work for the view's triangles. Call this once a frame. If the quality has no such limit, the call does
-    /// nothing.
+    /// [`Quality::milliseconds`](crate::scene::Quality::milliseconds). Report either the time of the whole frame, or
+    /// only the time of the work for the view's triangles. Call this once a frame. If the quality has no limit of time,
+    /// the call does nothing.
     ///
     /// # Errors
     /// [`InputError`] for a time that is negative or not finite.

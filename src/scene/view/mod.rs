@@ -39,7 +39,7 @@ use uniforms::{clip_rows, lod_camera};
 /// # Examples
 ///
 /// The main view, and the view of a sun's shadow map. The sun's view shows only casters, including casters outside the
-/// main view's picture. Its levels of detail are those that the main view needs.
+/// main view's picture. The sun's view uses the levels of detail that the main view needs.
 ///
 /// ```no_run
 /// use glam::Vec3;
@@ -173,12 +173,12 @@ impl View {
         })
     }
 
-    /// Sets the camera. Its field of view, viewport and depth direction may differ from those of the previous camera.
+    /// Sets the camera. Field of view, viewport and depth direction may differ from the previous camera's.
     ///
     /// # Errors
     /// [`InputError`] if [`Camera::validate`] refuses the camera, and for a projection that is neither perspective nor
     /// parallel. [`InputError`] also if the near plane is not ahead of the eye; [`Camera::depth`] decides which plane
-    /// is the near one. The camera then stays unchanged.
+    /// is the near one. After an error, the camera is unchanged.
     ///
     /// # Examples
     ///

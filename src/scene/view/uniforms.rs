@@ -11,7 +11,7 @@ use crate::scene::view::ViewShadow;
 use crate::shared::render::scene_view::SceneView;
 
 impl SceneView {
-    /// The view's uniform for shaders, from its camera now and in the last frame, the light, and the sun's shadow.
+    /// The view's uniform for shaders, computed from the present and the last camera, the light, and the sun's shadow.
     pub(super) fn new(
         [camera, last]: [&Camera; 2],
         own: &LodCamera,

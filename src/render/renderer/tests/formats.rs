@@ -15,7 +15,7 @@ use crate::scene::layouts::SceneLayouts;
 use crate::scene::specialization::{PartState, Program, Specialization};
 use crate::surface::{Green, ReliefMethod, ReliefOptions, ReliefShadow};
 
-/// Parts that cover every entry point and both values of every flag. For reliefs, the method is given too.
+/// Parts that cover every entry point and both values of every flag. A part of a relief comes with its method.
 fn parts() -> Vec<(Option<ReliefMethod>, Specialization)> {
     let flags = || [false, true].into_iter();
     let states = flags().flat_map(|cut_out| {

@@ -27,7 +27,7 @@ impl Taken {
     }
 }
 
-/// The largest resource use of vertex and fragment stages. Everything above is left to the caller.
+/// The largest resource use of vertex and fragment stages. The rest of WebGPU's default limits is left to the caller.
 const VERTEX: Taken = Taken { storage: 8, uniforms: 4, textures: 0, samplers: 0, locations: 7 };
 const FRAGMENT: Taken = Taken { storage: 4, uniforms: 4, textures: 5, samplers: 3, locations: 7 };
 

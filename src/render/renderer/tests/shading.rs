@@ -147,7 +147,7 @@ fn a_square_with_one_side_is_seen_from_that_side_only() {
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let (format, square) = (TargetFormat::new(FORMAT), square(&gpu, &layouts, false));
     let mirror = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
-    // A placement mirrored in the square's own plane turns its front to the other side.
+    // A placement mirrored in the square's own plane turns the square's front to the other side.
     let flipped = Mat4::from_scale(Vec3::new(1.0, 1.0, -1.0));
     for (placement, is_seen_from_behind) in [(Mat4::IDENTITY, false), (mirror, false), (flipped, true)] {
         for from_behind in [false, true] {
@@ -166,7 +166,7 @@ fn materials_that_share_a_texture_or_have_none_keep_their_colors() {
     let layouts = SceneLayouts::new(&gpu).expect("valid");
     let (light, format) = (Vec3::Z, TargetFormat::new(FORMAT));
     let colors = [[1.0, 0.25, 0.5, 1.0], [0.5, 0.8, 1.0, 1.0]];
-    // Textures of the two materials: none; a shared one; only the second's; two different ones.
+    // Textures of the two materials: no textures; one shared texture; a texture for the second only; two different textures.
     for images in [[None, None], [Some(0), Some(0)], [None, Some(0)], [Some(1), Some(0)]] {
         let mut model = model();
         let texture = |image| Texture { image, sampling: Sampling::default() };

@@ -185,7 +185,7 @@ pub fn differing(a: &[[u8; 4]], b: &[[u8; 4]], levels: u8) -> usize {
     a.iter().zip(b).filter(|pair| far(*pair)).count()
 }
 
-/// Clear value of all [`FORMAT`] colours except the first, as a colour and as texels.
+/// Clear value of all [`FORMAT`] colours except the first, as a colour and as a texel.
 const OTHER: (wgpu::Color, [u8; 4]) = (wgpu::Color { r: 1.0, g: 0.0, b: 1.0, a: 0.0 }, [255, 0, 255, 0]);
 
 /// Textures for the attachments of a target format.
@@ -254,7 +254,7 @@ impl Canvas {
         from.map_or_else(|| vec![[0; 4]; (SIZE[0] * SIZE[1]) as usize], |from| texels(gpu, from))
     }
 
-    /// The number of texels of another four-byte colour that differ from its clear value.
+    /// The number of texels that differ from the clear value [`OTHER`] in the four-byte colour with index `at`, from 1 on.
     pub fn changed(&self, gpu: &Gpu, at: usize) -> usize {
         let color = self.colors[at].as_ref().expect("a colour");
         texels(gpu, color).iter().filter(|texel| **texel != OTHER.1).count()

@@ -92,7 +92,8 @@ impl Land {
         2.0 * f64::from(self.config.patch_size - 1) * self.config.terrain_scale
     }
 
-    /// A view of the whole land, with the light of maps. The land lies in the camera's cell or below this cell.
+    /// A view of the whole land, with the light of the default [`Shading`]. The land lies in the camera's cell or below this
+    /// cell.
     pub fn view(&self) -> SceneView {
         let high = DVec3::new(self.edge(), 0.2 * self.edge(), self.edge());
         let framed = Camera::framing(DVec3::ZERO, high, SIZE);
@@ -108,8 +109,8 @@ impl Land {
     }
 }
 
-/// Another origin of the samples moves edges only by rounding, a fraction of a pixel. The test also fails if quads are divided
-/// along the other diagonal.
+/// Another origin of the samples moves edges only by rounding errors, which are a fraction of a pixel. The test also fails if
+/// quads are divided along the other diagonal.
 #[test]
 fn terrain_looks_the_same_from_any_sample() {
     let gpu = gpu();
