@@ -1,5 +1,5 @@
-//! Allowed displacement: the largest distance by which a view lets a surface be off. This one formula turns pixels into limits
-//! for levels of detail, bone gates and influences. CPU reference of `wgsl/lod/allowed.wgsl`. `docs/pixel-bounds.md` derives the
+//! Allowed displacement: the largest displacement of a surface that a view's limit in pixels permits. One formula computes it for
+//! levels of detail, bone gates and influences. CPU reference of `wgsl/lod/allowed.wgsl`. `docs/pixel-bounds.md` derives the
 //! formula.
 
 use glam::Vec3;
@@ -10,7 +10,7 @@ use crate::shared::lod::view::POSITION_SLACK;
 
 impl LodCamera {
     /// Allowed displacement of a sphere, in world units. If every point inside moves by at most this distance, the camera draws
-    /// no point more than `self.pixels` pixels from its place. CPU reference of `camera_allows`.
+    /// each point at most `self.pixels` pixels from its original position. CPU reference of `camera_allows`.
     pub fn allows(&self, center: Vec3, radius: f32) -> f32 {
         if self.perspective == 0.0 {
             return ALLOWED_MARGIN * (self.pixels / self.focal);
@@ -33,8 +33,8 @@ impl LodCamera {
     }
 }
 
-/// Smallest displacement that any of the cameras allows a sphere, in model units. `scale` is the model's largest scale: it
-/// converts from world units.
+/// Smallest displacement that any of the cameras allows a sphere, in model units. `scale` is the model's largest scale, which
+/// converts world units to model units.
 pub fn allowed_by(cameras: &[LodCamera], center: Vec3, radius: f32, scale: f32) -> f32 {
     let least = cameras.iter().map(|camera| camera.allows(center, radius)).fold(MAX_ALLOWED, f32::min);
     (least / scale.max(LEAST_SCALE)).min(MAX_ALLOWED)

@@ -16,8 +16,8 @@ pub enum Depth {
     Reversed,
 }
 
-/// Relative length of a plane's normal below which f32 rounding of the matrices decides the normal's direction. The normal is
-/// the difference of two rows of the matrix, and the length is relative to those rows.
+/// Smallest usable length of a plane's normal, as a fraction of the length of the matrix rows. The normal is the difference of
+/// two rows. If it is shorter, f32 rounding of the matrices decides its direction.
 const LOST: f64 = 1e-4;
 
 /// A plane that excludes nothing.
@@ -58,8 +58,8 @@ impl LodCamera {
     /// # Errors
     /// [`InputError`] for:
     /// - `camera.view_from_cell` that is not finite, affine and invertible;
-    /// - `camera.clip_from_view` that is not finite or collapses the picture, or whose near plane, by `depth`, is not ahead of
-    ///   the eye;
+    /// - `camera.clip_from_view` that is not finite or collapses the picture, or whose near plane (as given by `depth`) is not
+    ///   ahead of the eye;
     /// - `camera.viewport` without pixels;
     /// - `quality.pixels` that is negative or not finite.
     pub fn new(
@@ -184,10 +184,11 @@ fn up(number: f64) -> f32 {
     if f64::from(rounded) < number { rounded.next_up() } else { rounded }
 }
 
-/// Whether a matrix to clip space mirrors: triangles that are counter-clockwise in its source space, seen from outside, run
-/// clockwise on the screen. In a parallel view, depth must grow with distance, because the determinant of all three axes decides.
+/// Whether a matrix to clip space mirrors. If so, a triangle that is counter-clockwise in the source space, seen from outside, is
+/// clockwise on the screen. In a parallel view, depth must grow with distance, because the result is the sign of the determinant
+/// of all three axes.
 pub fn is_mirrored(clip: &Mat4) -> bool {
-    // In f64, because the product of three small scales may underflow f32.
+    // Computed in f64, because the product of three small scales may underflow f32.
     let [right, up, depth, ahead] = [0, 1, 2, 3].map(|row| clip.row(row).truncate().as_dvec3());
     let ahead = if ahead == DVec3::ZERO { depth } else { ahead };
     right.cross(up).dot(ahead) > 0.0

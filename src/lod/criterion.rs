@@ -1,4 +1,4 @@
-//! Criteria of an instance's level of detail: a metric per instance and camera, and a threshold per level. CPU reference
+//! Criteria that choose an instance's level of detail: a metric per instance and camera, and a threshold per level. CPU reference
 //! of `wgsl/lod/criterion.wgsl`.
 
 use glam::Vec3;
@@ -26,7 +26,7 @@ pub enum Criterion {
     Error,
     /// The distance from the eye (thesis A, section 6.1).
     Distance {
-        /// The point of the instance to measure to.
+        /// The point of the instance to which the distance is measured.
         to: DistanceTo,
         /// Smallest distances in world units at which levels 1, 2, … are drawn, ascending, above 0.
         from: Vec<f32>,
@@ -46,7 +46,7 @@ pub enum Criterion {
     /// A target triangle count that falls linearly with the distance (thesis A, section 6.1.1). Up to `near`, it is the finest
     /// level's count; from `far` on, the coarsest level's. The level with the nearest count is drawn.
     Ratio {
-        /// The point of the instance to measure to.
+        /// The point of the instance to which the distance is measured.
         to: DistanceTo,
         /// Distance in world units up to which the finest level is drawn, at least 0.
         near: f32,
@@ -129,10 +129,11 @@ impl Criterion {
         }
     }
 
-    /// Two factors of a threshold: at the first, an instance returns to the finer level; at the second, it takes the coarser one.
+    /// Two factors that multiply a threshold. At the first product, an instance returns to the finer level; at the second, it
+    /// takes the coarser level.
     ///
-    /// `width` is half the width of the band between them, as a fraction. The band of [`Criterion::Error`] lies on the coarser
-    /// side, so that the allowed error is not exceeded.
+    /// `width` is half the width of the band between the two products, as a fraction of the threshold. The band of
+    /// [`Criterion::Error`] lies on the coarser side, so that the allowed error is not exceeded.
     #[cfg(feature = "gpu")]
     pub(crate) fn band(&self, width: f32, is_hysteresis: bool) -> [f32; 2] {
         match self {

@@ -5,7 +5,7 @@ use glam::{IVec3, Quat, Vec3};
 use super::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, SceneInstance, instance_flags_word};
 
 impl SceneInstance {
-    /// An instance at the corner of cell 0, at the model's scale, that casts shadows and is visible to every view.
+    /// An instance that casts shadows and is visible to every view. It lies at the corner of cell 0 and has the model's scale.
     ///
     /// `bounding_sphere` is a sphere around everything that the instance may draw, in the model's space: center and
     /// radius.

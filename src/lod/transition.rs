@@ -23,8 +23,8 @@ const ON_THE_WAY: f32 = 1.2;
 ///
 /// A fade draws an instance twice while its level changes. [`Transition::Dither`] shows its pattern in every layer. All other
 /// fades blend: the blended level is drawn in [`Layer::Transparent`](crate::render::Layer::Transparent), after everything opaque.
-/// Layers other than colour and depth then show only the level with the larger weight. Parts with blended materials change at
-/// once.
+/// During such a fade, layers other than colour and depth show only the level with the larger weight. Parts with blended
+/// materials change at once.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Transition {
@@ -38,13 +38,13 @@ pub enum Transition {
     /// picture equals the coarser level, so the level change itself is invisible.
     ///
     /// With [`Criterion::Error`], a level begins to move when 1.2 times the next level's error is allowed. The move ends when 1.2
-    /// times the error of the level after that is allowed. The factor 1.2 allows for the surface between two levels, whose error
-    /// may exceed the errors of both levels (figures in `docs/pixel-bounds.md`). The drawn level is therefore one to two levels
-    /// finer than with [`Transition::Hard`]. This costs about 1.7 times the triangles, and two loads per vertex.
+    /// times the error of the level after the next one is allowed. The factor 1.2 allows for the surface between two levels,
+    /// whose error may exceed the errors of both levels (figures in `docs/pixel-bounds.md`). The drawn level is therefore one to
+    /// two levels finer than with [`Transition::Hard`]. This costs about 1.7 times the triangles, and two loads per vertex.
     ///
-    /// Vertex motion is part of velocity ([`Layer::Velocity`](crate::render::Layer::Velocity)). If the level of the last frame
-    /// was finer, a vertex was at its own position then. If that level was coarser, the vertex was at the position of the vertex
-    /// that replaced it.
+    /// Vertex motion is part of velocity ([`Layer::Velocity`](crate::render::Layer::Velocity)). If the last frame drew a finer
+    /// level, a vertex was at its own position in that frame. If the last frame drew a coarser level, a vertex was at the
+    /// position of the vertex that replaces it in that level.
     ///
     /// Where the last level is unknown, the current level counts as the last one. This applies to an instance that the view did
     /// not show in the last frame, and to all instances in the first frame after objects were added, removed or grew. If an
@@ -54,11 +54,11 @@ pub enum Transition {
     Dither(Pace),
     /// Both levels are blended, with weights λ and 1 − λ (thesis A, section 7.3.1). Opaque surfaces behind them show through.
     CrossFade(Pace),
-    /// The level is opaque. The next level is blended over it with weight 1 − λ, without writing depth (thesis A, section 7.3.2).
-    /// At the end of the fade, the old level disappears at once.
+    /// The old level is opaque. The next level is blended over it with weight 1 − λ, without writing depth (thesis A, section
+    /// 7.3.2). At the end of the fade, the old level disappears at once.
     FadeIn(Pace),
-    /// First the level is opaque while the next one fades in over it. Then the next one is opaque while the old level fades out
-    /// (thesis A, section 7.3.3). Nothing behind shows through.
+    /// First the old level is opaque while the next level fades in over it. Then the next level is opaque while the old level
+    /// fades out (thesis A, section 7.3.3). Surfaces behind the instance never show through.
     TwoPhase(Pace),
     /// Levels change at once, and distant instances fade out to nothing (thesis A, section 7.4). Opaque surfaces behind them show
     /// through. The two values have the unit of the object's criterion: distance, fraction of the viewport, or pixels per world
@@ -66,7 +66,7 @@ pub enum Transition {
     Alpha {
         /// The value at which instances begin to fade.
         opaque: f32,
-        /// The value at which instances have vanished, further away than `opaque`.
+        /// The value at which instances have vanished. It must lie further away than `opaque`.
         gone: f32,
     },
 }
@@ -79,7 +79,7 @@ pub enum Pace {
     /// is twice as wide, so that no level is drawn before it is allowed.
     Band(f32),
     /// The fade takes this many seconds, above 0. It starts when the criterion asks for another level. Until it ends, the old
-    /// level is still drawn, beyond what the criterion permits.
+    /// level is still drawn, even if the criterion no longer permits that level.
     Seconds(f32),
 }
 
@@ -161,11 +161,11 @@ impl Transition {
         Err(InputError::new("transition.gone", gone, format!("must be further away than opaque, {opaque}")))
     }
 
-    /// Threshold per level: the smallest metric at which the level is drawn. `thresholds` are those of the levels without a
+    /// Threshold per level: the smallest metric at which the level is drawn. `thresholds` are the levels' thresholds without a
     /// transition, ascending from 0.
     ///
-    /// With a geomorph, a level begins to move at its threshold: [`ON_THE_WAY`] times the next level's error. Level 0 is drawn
-    /// below its threshold too. The last level has no next level; twice its own error is used instead.
+    /// With a geomorph, a level begins to move at its threshold: [`ON_THE_WAY`] times the next level's error. Level 0 is also
+    /// drawn below its threshold. The last level has no next level; twice its own error is used instead.
     #[cfg(feature = "gpu")]
     pub(crate) fn begins(self, thresholds: &[f32]) -> Vec<f32> {
         match (self, thresholds.last()) {
@@ -198,8 +198,8 @@ fn steps_between(metric: f32, begin: f32, end: f32, most: u32) -> u32 {
     (most as f32 * ((metric - begin) / (end - begin)).clamp(0.0, 1.0) + 0.5) as u32
 }
 
-/// Level of an instance in the last frame, or [`NO_LEVEL`]. During a fade in time, this is the level to which it leads. `last` is
-/// the decision of that frame.
+/// Level of an instance in the last frame, or [`NO_LEVEL`]. During a timed fade, this is the level to which the fade leads.
+/// `last` is the last frame's decision.
 pub fn last_level(object: &LodObject, last: u32) -> u32 {
     match (decision_seen(last), decision_steps(last) > 0 && object_flags_timed(object.flags) != 0) {
         (0, _) => NO_LEVEL,
@@ -258,7 +258,7 @@ fn fading_in_time(object: &LodObject, level: u32, mirrored: u32, last: u32, seco
 /// Inputs of a decision besides the object and the metric.
 #[derive(Debug, Clone, Copy)]
 pub struct Circumstances {
-    /// The budget's factor of the metric, 1 or more.
+    /// The budget's factor for the metric, 1 or more.
     pub factor: f32,
     /// Whether the instance's placement mirrors.
     pub is_mirrored: bool,
@@ -266,7 +266,7 @@ pub struct Circumstances {
     pub last: u32,
     /// Seconds since the view's last frame.
     pub seconds: f32,
-    /// Whether all fades end in this frame, because a budget does not fit them.
+    /// Whether all fades end in this frame, because their triangles exceed a budget.
     pub ends_fades: bool,
 }
 
@@ -275,7 +275,8 @@ pub fn coarsened(object: &LodObject, metric: f32, factor: f32) -> f32 {
     factor * metric + (factor - 1.0) * object.metric_floor
 }
 
-/// Level of the last frame that hysteresis holds, or [`NO_LEVEL`]. Fades in a band and geomorphs do not depend on the last frame.
+/// Level that hysteresis holds: the instance's level in the last frame, or [`NO_LEVEL`] if there is none. Geomorphs and fades in
+/// a band do not depend on the last frame and always get [`NO_LEVEL`].
 pub fn held_level(object: &LodObject, last: u32) -> u32 {
     let is_timed = object_flags_timed(object.flags) != 0;
     match object_flags_transition(object.flags) {

@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 
 use crate::asset::{Mesh, Model};
 
-/// Weight of normals in mesh simplification. Different normals at one point are averaged. With a larger weight,
-/// simplification would therefore keep the inside of flat faces and cut their corners.
+/// Weight of normals in mesh simplification. Different normals at one point are averaged, which blurs them at corners.
+/// With a larger weight, simplification would therefore keep vertices inside flat faces and cut off the corners.
 pub const NORMAL: f32 = 0.05;
 
 /// Edge of a reference square, as a fraction of the mesh's size. On this square, a texture that slips by some distance
@@ -21,7 +21,7 @@ pub fn shown_uv(model: &Model, mesh: &Mesh) -> Vec<[f32; 2]> {
     if is_shown { mesh.uv.clone() } else { vec![[0.0; 2]; mesh.uv.len()] }
 }
 
-/// The area of a mesh's triangles, twice: in the mesh's units, and in texture coordinates.
+/// The area of a mesh's triangles, measured in the mesh's units and in texture coordinates. Both values are doubled.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct TextureArea {
     surface: f64,

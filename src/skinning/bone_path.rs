@@ -45,9 +45,9 @@ impl BonePath {
 
 /// An upper bound on the factor by which a matrix with these rows lengthens a vector.
 ///
-/// The bound is the smaller of two square roots: of the largest row sum of the products of columns (Gershgorin), and of
-/// the sum of the squares of all elements. Up to rounding, it is exact for a scale along the axes followed by a
-/// rotation.
+/// The bound is the square root of the smaller of two values. One is the largest row sum of absolute values in the
+/// matrix of dot products between columns (Gershgorin). The other is the sum of the squares of all elements. Up to
+/// rounding, the bound is exact for a scale along the axes followed by a rotation.
 fn stretch(rows: [Vec3; 3]) -> f32 {
     let squares: Vec3 = rows.iter().map(|row| row * row).sum();
     let mixed = rows.iter().map(|row| row * row.yzx()).sum::<Vec3>().abs();

@@ -29,15 +29,14 @@ pub struct MeshBuffers {
     pub uv: Buffer<[f32; 2]>,
     /// Three indices per triangle, for all levels of detail; see [`Clusters::indices`].
     pub indices: Buffer<u32>,
-    /// The part of the mesh that each level of detail of the whole character ([`level_errors`]) draws. Entry 0 is the
-    /// full mesh.
+    /// For each level of detail of the whole character ([`level_errors`]), the part of the mesh that the level draws.
+    /// Entry 0 is the full mesh.
     pub levels: Vec<ClusterLevel>,
     /// The bones and weights of each cluster's vertices, packed; see [`Clusters::influences`].
     pub influences: Buffer<u32>,
     /// The set of bones that each cluster follows, as bits; see [`Clusters::masks`].
     pub masks: Buffer<u32>,
-    /// Index in `deltas` of each vertex's first delta. The buffer has one more entry than vertices: the total number of
-    /// deltas.
+    /// Index in `deltas` of each vertex's first delta. One more entry at the end has the total number of deltas.
     pub delta_offsets: Buffer<u32>,
     /// Morph deltas, three vectors each: position delta with the target's index as bits in w; normal delta; tangent
     /// delta.
@@ -57,8 +56,8 @@ pub struct MeshBuffers {
 }
 
 impl MeshBuffers {
-    /// Uploads one mesh of a model. The levels of detail are those of the whole model ([`level_errors`]). At each of
-    /// them, the clusters use the mesh's own level from [`own_levels`].
+    /// Uploads one mesh of a model. At each level of detail of the whole model ([`level_errors`]), the clusters use the
+    /// mesh's own level from [`own_levels`].
     ///
     /// # Errors
     /// [`InputError`] for a mesh that does not match its skin; [`GpuError`] if a buffer cannot be allocated.
@@ -132,10 +131,10 @@ pub struct SkinnedCrowd {
     /// The bone transforms that [`super::palette::PalettePass`] writes, at index `instance · bones of the skin + bone`.
     /// A bone takes three vectors, or four for dual quaternions.
     pub palette: Buffer<[f32; 4]>,
-    /// Level of detail of each instance, full quality at first. [`InstanceLod::UNSEEN`] marks an instance that is not
+    /// Level of detail of each instance, initially full quality. [`InstanceLod::UNSEEN`] marks an instance that is not
     /// skinned.
     pub instance_lods: Buffer<InstanceLod>,
-    /// Weights of the morph targets, all weights of instance 0 first; 0 at first.
+    /// Weights of the morph targets, all weights of instance 0 first. Initially, all weights are 0.
     pub weights: Buffer<f32>,
     /// Morphed vertices at index `instance · vertices + slot`, written by [`super::morph::MorphPass`] if the mesh has
     /// targets. Clusters beyond an instance's level of detail keep their previous contents. The buffer is empty if
@@ -209,8 +208,8 @@ impl ActiveClusters {
         })
     }
 
-    /// Allocates an empty list as [`ActiveClusters::new`], plus a state for each cluster, because previous positions
-    /// are kept.
+    /// As [`ActiveClusters::new`], but also allocates a state for each cluster of each instance, so that previous
+    /// positions can be kept.
     ///
     /// # Errors
     /// [`GpuError`] if a buffer cannot be allocated.
@@ -219,7 +218,7 @@ impl ActiveClusters {
         Ok(Self { pairs, keeps_last: true, ..Self::new(gpu, mesh, crowd)? })
     }
 
-    /// Number of words in [`ActiveClusters::pairs`] for this number of pairs of a cluster and an instance.
+    /// Number of words that [`ActiveClusters::pairs`] needs for `pairs` pairs. A pair is a cluster and an instance.
     pub(crate) fn words(&self, pairs: usize) -> usize {
         if self.keeps_last { 2 * pairs } else { pairs }
     }

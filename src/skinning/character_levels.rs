@@ -7,9 +7,9 @@ use crate::asset::mesh::{MAX_LEVELS, Mesh};
 
 /// The errors of a character's levels 1, 2 … in the model's units: at most 15, ascending.
 ///
-/// The errors are collected from the levels of all meshes. If there are more than 15, those are left out whose omission
-/// adds the fewest triangles, summed over the logarithm of the distance. A character with one mesh keeps the mesh's own
-/// errors.
+/// The errors are collected from the levels of all meshes. If there are more than 15, errors are left out one by one:
+/// each time the error whose omission adds the fewest triangles, summed over the logarithm of the distance. A character
+/// with one mesh keeps the mesh's own errors.
 pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
     level_errors_within(meshes, MAX_LEVELS)
 }
@@ -65,8 +65,8 @@ impl Step {
         Self { error, logarithm: libm::log(f64::from(error)), lost }
     }
 
-    /// The additional triangles that are drawn if the step is left out. It is infinite for an error of 0, which is
-    /// always allowed.
+    /// Cost of leaving out the step: the additional triangles that are drawn, summed over the logarithm of the
+    /// distance. The cost is infinite for an error of 0, which is always allowed.
     fn cost(&self, next: &Self) -> f64 {
         if self.lost == 0 { 0.0 } else { self.lost as f64 * (next.logarithm - self.logarithm) }
     }
@@ -119,7 +119,7 @@ mod tests {
         let idle: Vec<_> = (0..12).map(|at| (90 - at as usize, 1.5 * doubling(at))).collect();
         let meshes = [steep, mesh(91, &idle)];
         assert_eq!(level_errors(&meshes), wanted);
-        // The omitted levels are used from the next error of the character on.
+        // A mesh uses an omitted level from the character's next error on.
         assert_eq!(own_levels(&meshes[1], &wanted)[..4], [0, 0, 1, 2]);
         // The coarsest level is always kept.
         let meshes = [meshes[0].clone(), mesh(90, &[(89, 1e9)])];

@@ -19,21 +19,21 @@ pub const MAX_SKIN_BONES: usize = 1 << 16;
 /// The part of a clustered mesh that one level of detail draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClusterLevel {
-    /// Number of vertices. They have the slots from 0 on.
+    /// Number of vertices. They have the first slots ([`Clusters::order`]).
     pub vertices: u32,
     /// Number of clusters that hold the level's vertices, starting with cluster 0. The last of them may also hold
     /// vertices of a finer level.
     pub clusters: u32,
     /// Index of the level's first triangle corner in [`Clusters::indices`].
     pub first_index: u32,
-    /// Number of entries in [`Clusters::indices`], three per triangle.
+    /// Number of the level's entries in [`Clusters::indices`], three per triangle.
     pub indices: u32,
 }
 
 /// A mesh's vertices in clusters of 64. Vertices of coarse levels come first. The last cluster may be partly filled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
-    /// For each slot, the index of its vertex in the mesh. A slot is a vertex's index in the order of clusters.
+    /// The vertices in the order of clusters, as indices in the mesh. A vertex's place in this list is its slot.
     pub order: Vec<u32>,
     /// Vertices before morphing, in the order of slots.
     pub vertices: Vec<Vertex>,
@@ -44,12 +44,13 @@ pub struct Clusters {
     /// The levels of detail; level 0 is the full mesh with all vertices. The others are the mesh's own levels
     /// ([`Mesh::levels`]), or, after [`Clusters::with_levels`], the levels of a character.
     pub levels: Vec<ClusterLevel>,
-    /// The influences of all vertices, packed cluster by cluster: two header words, and columns of [`CLUSTER`] words.
+    /// The influences of all vertices, packed: first two header words for each cluster, then the columns of each
+    /// cluster, [`CLUSTER`] words per column.
     ///
-    /// The header has the index of the cluster's first column, and the largest number of influences per vertex. The
-    /// first columns hold bones, two per word; the strongest bone is in the lower half of the first word. The next
-    /// columns hold the weights of all bones but the strongest, as bits. The strongest weight is 1 minus the sum of the
-    /// others.
+    /// A cluster's header has the index of the first word of its columns, and the largest number of influences per
+    /// vertex. The first columns of a cluster hold bones, two per word; the strongest bone is in the lower half of the
+    /// first word. The next columns hold the weights of all bones but the strongest, as bits. The strongest weight is 1
+    /// minus the sum of the others.
     pub influences: Vec<u32>,
     /// The set of bones that each cluster follows, in [`Clusters::mask_words`] words per cluster. There is one bit per
     /// bone, in the skeleton's [`Order`], as in gates and [`Active::updated_bones`](crate::animation::compact).
@@ -92,8 +93,8 @@ impl Clusters {
         })
     }
 
-    /// Replaces the levels by those of a character. `own` gives the mesh's own level at each level of the character,
-    /// from [`own_levels`](super::own_levels).
+    /// Replaces the mesh's levels by a character's levels. `own` gives the mesh's own level at each level of the
+    /// character, from [`own_levels`](super::own_levels).
     #[must_use]
     pub fn with_levels(mut self, own: &[u32]) -> Self {
         self.levels = own.iter().map(|level| self.level(*level)).collect();
@@ -138,7 +139,7 @@ fn all_triangles(mesh: &Mesh) -> impl Iterator<Item = &[u32]> {
     (0..=mesh.levels.len() as u32).map(|level| mesh.triangles(level))
 }
 
-/// For each vertex, the number of the coarsest level that uses it; at least 0, the full mesh.
+/// For each vertex, the coarsest level that uses it; 0 (the full mesh) if no triangle uses it.
 fn bands(mesh: &Mesh) -> Vec<u32> {
     let mut bands = vec![0; mesh.vertices()];
     for (level, triangles) in (0..).zip(all_triangles(mesh)) {

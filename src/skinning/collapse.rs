@@ -8,12 +8,14 @@
 //!   model-space transforms up to rounding. Between keys, they stay within about a thousandth of the model's size (half
 //!   the diagonal of its bounding box). Keys are added where linear interpolation would deviate more. If the collapsed
 //!   bone does not move in a clip, the tracks keep their keys, interpolation and tangents.
-//! - **Its vertices** follow the kept bone, rigidly as at rest. If two bones take a vertex to the same position, their
-//!   influences are added up, so skins get fewer joints. If a skin was not bound at rest, its joints remain separate.
+//! - **Its vertices** follow the kept bone rigidly, at their rest positions relative to that bone. If two bones take a
+//!   vertex to the same position, their influences are added up, so skins get fewer joints. If a skin was not bound at
+//!   rest, its joints remain separate.
 //!
-//! A bone with non-uniform scale is kept as long as bones below it are kept: their translation, rotation and scale
-//! could not represent the shear. Materials, images, morph targets, morph weights and levels of detail do not change.
-//! Roots, bones that provide root motion, and the uppermost bones that a clip moves never collapse.
+//! A bone with non-uniform scale is kept as long as bones below it are kept. Otherwise, the bones below would be
+//! sheared, which translation, rotation and scale cannot represent. Materials, images, morph targets, morph weights and
+//! levels of detail do not change. Roots, bones that provide root motion, and the uppermost bones that a clip moves
+//! never collapse.
 
 mod bind;
 mod choice;
@@ -84,8 +86,8 @@ pub struct CollapseError {
 /// A model with fewer bones, and its error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collapsed {
-    /// The model with fewer bones. Its clips, skins, meshes, materials and images have the same number and order as the
-    /// original's.
+    /// The model with fewer bones. Its clips, skins, meshes, materials and images have the same number and order as in
+    /// the original.
     pub model: Model,
     /// For each bone of the original, an index in [`Collapsed::model`]: the same bone if kept, else the bone it
     /// collapsed into.

@@ -1,5 +1,6 @@
 //! The extent of a mesh in clips: a bounding sphere, and the largest displacement of a vertex by the fade of
-//! influences. Both determine the distances at which a crowd may fade within an error in pixels.
+//! influences. Both determine the distances at which the influences of a crowd may fade while the error stays within a
+//! limit in pixels.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -69,7 +70,8 @@ impl Extent {
         Ok(all)
     }
 
-    /// The projected distances at which a crowd may begin to fade, and at which it may be rigid.
+    /// The projected distances at which the influences of a crowd may begin to fade, and at which its vertices may be
+    /// rigid.
     ///
     /// If influences fade over this range, no vertex is drawn more than `pixels` from its correct position, anywhere in
     /// the picture. Instances must not be scaled. With 0 pixels, nothing fades. Errors add up: a gate's error of ε′
@@ -79,13 +81,13 @@ impl Extent {
         FadeRange { start, end: self.beyond(projection, pixels, self.stray).max(start.next_up()) }
     }
 
-    /// For each error in `errors` ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)), the projected distance
-    /// from which a level with this error may be drawn.
+    /// For each error in `errors` ([`MeshLevel::error`](crate::asset::mesh::MeshLevel::error)), the smallest projected
+    /// distance at which a level with this error may be drawn.
     ///
-    /// From that distance on, the level and the mesh's surface are at most `pixels` apart on the screen: every point of
-    /// either surface has a point of the other within `pixels`, wherever the error holds. Instances must not be scaled.
-    /// With 0 pixels, a level with an error gets the largest finite distance. Errors add up, so split the allowed
-    /// pixels between fade and levels. `docs/pixel-bounds.md` has the derivation.
+    /// From that distance on, the level and the mesh's surface are at most `pixels` apart on the screen. Every point of
+    /// either surface has a point of the other surface within `pixels`. This holds wherever the level keeps its error.
+    /// Instances must not be scaled. With 0 pixels, a level with an error gets the largest finite distance. Errors add
+    /// up, so split the allowed pixels between fade and levels. `docs/pixel-bounds.md` has the derivation.
     pub fn level_ranges(
         &self,
         projection: &Projection,
@@ -150,10 +152,11 @@ fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
     MARGIN * moments.par_iter().map(farthest).reduce(|| 0.0, f32::max)
 }
 
-/// The largest displacement of a vertex per unit of fade λ: the maximum of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ over λ, i > 1.
+/// The largest displacement of a vertex per unit of fade λ: the maximum over λ of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ, with
+/// the sum over i > 1.
 ///
-/// As a function of 1/λ, the sum is piecewise linear, with kinks at λ = wᵢ/w₂, where one of the minima switches. Its
-/// length is therefore largest at a kink.
+/// As a function of 1/λ, the sum divided by λ is piecewise linear, with kinks at λ = wᵢ/w₂, where one of the minima
+/// switches. Its length is therefore largest at a kink.
 fn stray(influences: &[Influence], points: &[Vec3]) -> f32 {
     let Some(second) = influences.get(1) else { return 0.0 };
     let off = |fade: f32| {
@@ -223,7 +226,7 @@ mod tests {
         let range = |extent: &Extent, pixels| extent.fade_range(&projection, pixels);
         let FadeRange { start, end } = range(&extent, 0.5);
         assert_eq!(start, 4.5);
-        // An error of twice the pixels is reached at half the distance.
+        // With twice the allowed pixels, the fade ends at half the distance from its start.
         let nearer = range(&extent, 1.0).end;
         assert!(((nearer - start) / (end - start) - 0.5).abs() < 1e-3, "{nearer} {end}");
         let endless = FadeRange { start: 4.5, end: f32::MAX };
@@ -259,7 +262,7 @@ mod tests {
             for pixels in [0.25, 1.0, 8.0] {
                 let mut largest = 0.0_f32;
                 for (begin, error) in ranges(pixels, &errors).into_iter().zip(errors) {
-                    // The sphere's center, placed at the same projected distance in this direction.
+                    // The sphere's center, placed at the projected distance `begin` in this direction.
                     let middle = towards * (begin / (towards.z * towards.z));
                     let bounding_sphere = [-Vec3::Z, -towards, Vec3::X].map(|to| middle + extent.radius * to);
                     for (point, off) in bounding_sphere

@@ -9,7 +9,7 @@ pub use crate::shared::skinning::instance_lod::InstanceLod;
 /// Two projected distances in world units. Between them, the influences of all but the strongest bone fade out.
 ///
 /// The projected distance of a point is z²/d, where z is its depth and d its distance from the eye; in a parallel view
-/// it is d. A small displacement there moves the point on the screen by at most focal · displacement · d/z² pixels.
+/// it is d. A small displacement of the point moves it on the screen by at most focal · displacement · d/z² pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FadeRange {
     /// Up to this distance, all influences have their full weight.

@@ -1,5 +1,5 @@
 //! Levels of detail of skinned meshes. A mesh is simplified for all poses of its clips, and the error of each level is
-//! measured in all of them (A sections 9.3 and 9.4). Meshes of a model that share borders are simplified as one
+//! measured in all of these poses (A sections 9.3 and 9.4). Meshes of a model that share borders are simplified as one
 //! surface, so that no gap opens between them (B section 5.2).
 
 use std::iter::successors;
@@ -49,9 +49,9 @@ pub struct MeshLevels {
     ///
     /// The first level has an error of a thousandth of the mesh's size. Each later level has 1.4 times the error of the
     /// previous level, and at most 0.9 times its triangles. The size is the diagonal of the box around the triangles at
-    /// rest. If clips make the mesh more than twice as large or small, the largest pose counts instead. The units of
-    /// the bind pose do not matter. If meshes share borders, sizes and triangle counts are taken over all of these
-    /// meshes together. They then have the same number of levels with the same errors.
+    /// rest. If the largest pose of the clips has more than twice or less than half this size, its size counts instead.
+    /// The units of the bind pose do not matter. If meshes share borders, sizes and triangle counts are taken over all
+    /// of these meshes together. They then have the same number of levels with the same errors.
     pub levels: Vec<MeshLevel>,
     /// For each vertex, the vertex that replaces it at coarser levels; see
     /// [`Mesh::partners`](crate::asset::Mesh::partners).
@@ -67,9 +67,9 @@ impl MeshLevels {
     /// counts. Blending is linear, with the clips' weights of morph targets.
     ///
     /// Vertices that differ only in normals are merged first. Afterwards each remaining triangle corner gets the vertex
-    /// with the closest normal: closest to the corner's own normal, or, in a flat-shaded triangle, to the triangle's.
-    /// Texture coordinates count if the mesh's material shows a texture, or if the mesh has no material. The model's
-    /// other meshes are ignored; [`add_levels`] keeps borders between meshes closed.
+    /// with the closest normal: closest to the corner's own normal, or, in a flat-shaded triangle, to the triangle's
+    /// normal. Texture coordinates count if the mesh's material shows a texture, or if the mesh has no material. The
+    /// model's other meshes are ignored; [`add_levels`] keeps borders between meshes closed.
     ///
     /// The error of a level is the largest of the following distances in all sampled poses, plus 3 % for poses in
     /// between:
@@ -220,8 +220,8 @@ fn looked_at(moments: &[Moment]) -> Vec<Moment> {
 /// Computes the levels of all meshes of a model as [`MeshLevels::new`] does, sets them in the model, and returns them.
 ///
 /// Meshes whose borders coincide in every pose are simplified as one. Their borders stay closed at every level, and
-/// they have the same number of levels with the same errors. If a mesh has vanished at a level, it has a single
-/// triangle of zero area there.
+/// they have the same number of levels with the same errors. A mesh that has vanished at a level consists of a single
+/// triangle of zero area at that level.
 ///
 /// `clips` are the indices of the clips that will be played; none for a static mesh. `poses` is the number of poses
 /// sampled per clip, at most 216,001. To miss no motion, use the largest result of [`poses_of`](super::poses_of); fewer poses are
@@ -239,7 +239,7 @@ pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Ve
     Ok(watched(model, looks, &mut unwatched)?.unwrap_or_default())
 }
 
-/// As [`add_levels`], but the rest pose counts in addition to the clips, so errors hold at rest too.
+/// As [`add_levels`], but the rest pose counts in addition to the clips, so errors also hold at rest.
 ///
 /// # Errors
 /// The same errors as [`add_levels`].
@@ -390,7 +390,7 @@ mod tests {
             let mut model = plain.clone();
             let mesh = &mut model.meshes[0];
             mesh.positions.as_flattened_mut().iter_mut().for_each(|x| *x *= scale);
-            // All vertices follow one bone; otherwise the bones would have to be scaled too.
+            // All vertices follow one bone; otherwise the bones would also have to be scaled.
             let follows = (0..mesh.vertices()).map(|_| vec![Influence { bone: 0, weight: 1.0 }]);
             mesh.influences = Influences::new("w", model.skins[0].bones.len(), follows).expect("valid");
             let whole = Whole::new(&model, &[0], &Shared::new());
@@ -414,8 +414,8 @@ mod tests {
         }
     }
 
-    /// With an error of a hundredth of the height, a ninth of the triangles remain. Every level keeps its error at
-    /// moments that were not sampled too.
+    /// With an error of a hundredth of the height, a ninth of the triangles remain. Every level also keeps its error at
+    /// moments that were not sampled.
     #[test]
     fn creatures_lose_triangles_by_distance() {
         let model = crate::samples::creature().expect("valid");
@@ -445,8 +445,8 @@ mod tests {
         }
     }
 
-    /// In this mesh, every triangle has its own vertices with the face normal. The triangles of the levels have face
-    /// normals too.
+    /// In this mesh, every triangle has its own vertices with the face normal. The triangles of the levels also have
+    /// face normals.
     #[test]
     fn hard_edges_do_not_matter() {
         let mut model = crate::samples::creature().expect("valid");

@@ -44,7 +44,7 @@ pub struct Part {
     pub mesh: usize,
     /// The draw state of all of the part's triangles.
     pub key: PartKey,
-    /// The part's range of indices at each level of the object, level 0 included. The range counts in the indices of
+    /// The part's range of indices at each level of the object, level 0 included. The range refers to the indices of
     /// the mesh's own level ([`Mesh::triangles`](crate::asset::Mesh::triangles) of [`own_levels`]).
     pub indices: Vec<Range<u32>>,
 }
@@ -57,11 +57,11 @@ pub struct Part {
 /// bone and an inverse bind matrix that a vertex follows. Meshes without triangles are left out.
 ///
 /// Meshes with morph targets are merged only with meshes that have the same morph weights in every clip. Parts differ
-/// in their [`PartKey`]. There are at most [`MAX_PARTS`] parts, unless merged meshes and uses of alpha need more: one
-/// or two parts for each of them. To stay within this limit, parts with few triangles lose their texture sampling
-/// first. They get the sampling of the largest part with the same mesh, alpha and sides. A mesh without textures or
-/// normal maps joins a part with any sampling. If many morphed meshes would exceed [`MAX_DRAWS`], there are fewer
-/// levels, at least one.
+/// in their [`PartKey`]. There are at most [`MAX_PARTS`] parts, unless the merged meshes need more. Each use of alpha
+/// in a merged mesh needs one part, or two if only some of its triangles are double-sided. To stay within
+/// [`MAX_PARTS`], parts with few triangles lose their texture sampling first. They get the sampling of the largest part
+/// with the same mesh, alpha and sides. A mesh without textures or normal maps joins a part with any sampling. If many
+/// morphed meshes would exceed [`MAX_DRAWS`], there are fewer levels, but at least one.
 ///
 /// # Errors
 /// [`InputError`] if a mesh or skin does not match the model, if the model lacks a material or image that it names, or

@@ -16,8 +16,8 @@ use crate::skinning::palette::reference::palette;
 use crate::skinning::skin::reference::skin;
 use crate::skinning::vertex::Vertex;
 
-/// Poses per second at which [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) sample a clip; enough for
-/// motion.
+/// Poses per second at which [`MeshLevels`](super::MeshLevels) and [`Extent`](super::Extent) sample a clip. This is
+/// enough to follow motion.
 const POSES_A_SECOND: f32 = 60.0;
 
 /// The longest clip that [`poses_of`] accepts, in seconds: one hour, which is 216,001 poses at 60 per second.
@@ -114,8 +114,8 @@ pub(super) fn weights_at(model: &Model, mesh: &Mesh, moment: Moment) -> Vec<f32>
     }
 }
 
-/// The positions of the vertices `vertices` of a mesh at a moment. `bones` holds the bones' model-space matrices at that moment.
-/// The positions equal those from [`Pose::positions`].
+/// The positions of some vertices of a mesh at a moment. `vertices` are their indices. `bones` holds the bones'
+/// model-space matrices at that moment. The positions equal those from [`Pose::positions`].
 pub(super) fn positions_of(
     model: &Model,
     mesh: &Mesh,
@@ -151,12 +151,13 @@ impl Pose {
         Self::at(model, mesh, &bones_at(model, moment), &weights_at(model, mesh, moment))
     }
 
-    /// The pose with the model-space matrices `models` of the bones and these morph weights.
+    /// The pose in which the bones have the model-space matrices `models` and the morph targets have the weights
+    /// `weights`.
     pub(super) fn at(model: &Model, mesh: &Mesh, models: &[Affine], weights: &[f32]) -> Self {
         Self { palette: palette(&model.skins[mesh.skin], models), vertices: morph(mesh, weights) }
     }
 
-    /// The positions that a vertex would have if it followed each of its bones alone.
+    /// For each bone of a vertex, the position that the vertex would have if it followed only this bone.
     pub(super) fn points(&self, vertex: usize, influences: &[Influence]) -> Vec<Vec3> {
         let position = self.vertices[vertex].position;
         influences.iter().map(|influence| moved(&self.palette, position, influence)).collect()

@@ -8,7 +8,7 @@
 //!
 //! If the scene keeps its last frame, the operation also keeps the product of bone and offset for two frames, and writes the
 //! mesh's transform in the last frame. The bone counts as static if the mesh was attached after the last frame, or if no view saw
-//! its character in that frame.
+//! the character in that frame.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -19,10 +19,10 @@ pub use pass::{AttachBuffers, AttachPass};
 
 pub use crate::shared::lod::attach::{AttachParams, Attachment, KeptBone, NO_MESH};
 
-/// Parity bound for an entry of an attached mesh's placement: the relative error of any device. It is relative to the entry that
-/// Parity bound for an entry of an attached mesh's placement on any device, as a relative error. The error is relative to the
-/// same entry, computed from the absolute values of all three transforms.
+/// Bound on the difference between CPU and GPU for an entry of an attached mesh's placement, on any device: 3e-6. It is relative
+/// to the same entry computed from the absolute values of all three transforms.
+///
 /// Every operation on a device may round by ε = 2⁻²³. An entry of the placement's axes carries an error of 7ε. Each of the two
-/// products adds 4ε: multiplication (ε), two additions (2ε), and the addition of the translation (ε). The sum is 15ε. The host
-/// adds half of it again: 2.7e-6 in total, rounded up.
+/// products adds 4ε: multiplication (ε), two additions (2ε), and the addition of the translation (ε). The sum is 15ε. The CPU
+/// reference adds half of this sum. The total is 2.7e-6, which is rounded up.
 pub const ATTACH_BOUND: f32 = 3e-6;

@@ -7,7 +7,7 @@ use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::lod::BLOCK;
 use crate::shared::lod::budget::{BINS, FADES, FIND_BIN, FIND_PART, FINISH, PARTS};
 
-/// Buffers of the budget kernel: those of the budget, and those of one view that shares the budget.
+/// Buffers of the budget kernel: the buffers of the budget, and the buffers of one view that shares it.
 #[doc(inline)]
 pub use bindings::Buffers as BudgetBuffers;
 

@@ -20,7 +20,7 @@ pub struct Budgeted<'a> {
     pub last: u32,
 }
 
-/// Largest pressure (how far a budget coarsens): every object with a rank is at its coarsest level.
+/// Largest pressure, at which every object with a rank is at its coarsest level. Pressure measures how far a budget coarsens.
 pub const MAX_PRESSURE: u32 = BIN_PARTS * ALL_BINS - 1;
 
 fn part_of(factor: f32) -> u32 {
@@ -32,7 +32,8 @@ pub fn triangles_of(object: &LodObject, level: u32) -> u32 {
     object.triangles.as_flattened()[level as usize]
 }
 
-/// Level of an instance without a budget, its metric, and the level that hysteresis holds. `None` if the instance does not count.
+/// Three values of an instance: its level if there were no budget, its metric, and the level that hysteresis holds. `None` if the
+/// instance is unseen or has faded out.
 fn level_of(instance: &Budgeted<'_>) -> Option<(u32, f32, u32)> {
     let Budgeted { object, metric, last } = *instance;
     let value = f32::from_bits(metric_bits(metric));
@@ -43,8 +44,8 @@ fn level_of(instance: &Budgeted<'_>) -> Option<(u32, f32, u32)> {
     Some((level_within(object, value, held), value, held))
 }
 
-/// Triangles that an instance saves: for each coarser level, the pressure from which on it saves, and the triangles in units of
-/// the budget.
+/// Savings of an instance. For each coarser level that saves triangles: the smallest pressure at which the level is drawn, and
+/// the number of triangles that it saves compared with the level before, in units of the budget.
 pub fn savings(instance: &Budgeted<'_>) -> Vec<(u32, u32)> {
     let Some((level, metric, held)) = level_of(instance) else { return Vec::new() };
     let object = instance.object;
@@ -61,7 +62,7 @@ pub fn savings(instance: &Budgeted<'_>) -> Vec<(u32, u32)> {
     all
 }
 
-/// Number of triangles of all instances without a budget, in units of the budget.
+/// Number of triangles that all instances would draw if there were no budget, in units of the budget.
 pub fn triangles(instances: &[Budgeted<'_>]) -> u32 {
     let of = |instance: &Budgeted<'_>| Some(triangles_of(instance.object, level_of(instance)?.0));
     instances.iter().filter_map(of).sum()
@@ -107,7 +108,8 @@ pub fn state(view: &SelectView, needed: Option<u32>, last: &BudgetState) -> Budg
     }
 }
 
-/// Number of triangles that all instances draw with the factors of `state`, in units of the budget. A fade counts both levels.
+/// Number of triangles that all instances draw with the factors of `state`, in units of the budget. An instance that fades counts
+/// with both levels.
 pub fn drawn(view: &SelectView, instances: &[Budgeted<'_>], state: &BudgetState) -> u32 {
     let of = |instance: &Budgeted<'_>| {
         let (_, metric, _) = level_of(instance)?;

@@ -21,8 +21,8 @@ pub fn decide(view: &SelectView, object: &LodObject, budget: &BudgetState, metri
     decision(object, f32::from_bits(metric_bits(metric)), &circumstances)
 }
 
-/// Finest level of an instance after one more view of the frame. `before` is the result of the earlier views,
-/// [`UNSEEN_LEVEL`](super::UNSEEN_LEVEL) for the first view.
+/// Finest level of an instance in the views of a frame, updated by the decision of one more view. `before` is the result of the
+/// earlier views; for the first view, it is [`UNSEEN_LEVEL`](super::UNSEEN_LEVEL).
 pub fn finest(before: u32, decision: u32) -> u32 {
     if decision == 0 { before } else { before.min(finest_of(decision)) }
 }

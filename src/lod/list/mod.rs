@@ -1,6 +1,6 @@
 //! Instance lists of a view. Each object has two lists per level of detail: one of unmirrored instances and one of mirrored
-//! instances. Their order is ascending and the same on every run. Objects whose transition fades have two more lists per level,
-//! for instances that fade in or out.
+//! instances. Instances are in ascending order, the same on every run. Objects whose transition fades have two more lists per
+//! level, for instances that fade in or out.
 //!
 //! [`decide`](super::decide) counts the instances of each block in each list. Prefix sums of the counts give the position at
 //! which a block's instances begin in a list. Inside a block, instances keep their order, so the result does not depend on thread
@@ -33,8 +33,8 @@ impl LodObject {
         self.lists() * self.instances
     }
 
-    /// Index of a list's first word in a view's list buffer. A level's list is 2 · level + mirrored. The list of its fading
-    /// instances comes 2 · levels later.
+    /// Index of a list's first word in a view's list buffer. The list of a level has the number 2 · level + mirrored. The number
+    /// of the list of fading instances is larger by 2 · levels.
     pub fn list_begin(&self, list: u32) -> u32 {
         self.first_list + list * self.instances
     }

@@ -17,8 +17,8 @@ pub struct ListBuffers<'a> {
     pub decisions: &'a Buffer<u32>,
     /// In: instance count per block and list, [`OBJECT_LISTS`] counts for each block. The kernel overwrites them.
     pub counts: &'a Buffer<u32>,
-    /// Out: list entries, from [`LodObject::list_begin`] on. An entry has an instance's index in its object, its level and its
-    /// steps.
+    /// Out: list entries, from [`LodObject::list_begin`] on. An entry has an instance's index in its object, the level, and the
+    /// steps of the transition.
     pub lists: &'a Buffer<u32>,
     /// Out: draws of all objects ([`LodObject::draw`]). Only their instance counts are written.
     pub arguments: &'a Buffer<SceneDraw>,

@@ -50,15 +50,15 @@ pub fn depth_inside(view: &SelectView, center: Vec3, radius: f32) -> f32 {
     view.planes.iter().map(depth).fold(MAX_ALLOWED, f32::min)
 }
 
-/// Whether a view may see a sphere, with a margin of a thousandth of its radius. The margin covers devices that round
-/// differently, so that they show no instance that the host did not expect.
+/// Whether a view may see a sphere, with a margin of a thousandth of its radius. The margin covers the rounding of devices: if
+/// the result is false, no device shows the instance.
 #[cfg(feature = "gpu")]
 pub(crate) fn nearly_seen(view: &SelectView, center: Vec3, radius: f32) -> bool {
     depth_inside(view, center, 1.001 * radius) >= -1e-3 * radius
 }
 
 /// Selects an instance for a view; `None` if the view does not see the instance. `last` is the instance's transform in the view's
-/// last frame, if the view saw the instance then.
+/// last frame, if the view saw the instance in that frame.
 pub fn select(
     view: &SelectView,
     object: &LodObject,
@@ -116,8 +116,8 @@ pub fn word(selected: Option<&Selected>, instance: &SceneInstance) -> u32 {
     selected.map_or(UNSEEN_METRIC, word)
 }
 
-/// Allowed displacement of an instance after one more view of the frame. `before` is the result of the earlier views, `None` for
-/// the first view.
+/// Allowed displacement of an instance in the views of a frame, updated by one more view. `before` is the result of the earlier
+/// views; for the first view, it is `None`.
 pub fn merged(before: Option<f32>, selected: Option<&Selected>) -> f32 {
     match (before.filter(|before| *before >= 0.0), selected) {
         (Some(before), Some(selected)) => before.min(selected.allowed),

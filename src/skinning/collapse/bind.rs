@@ -8,8 +8,8 @@ use crate::InputError;
 use crate::asset::skeleton::inverse_bind;
 use crate::asset::{Influence, Influences, Mesh, Model, Skin};
 
-/// Tolerance for merging two joints of one bone, as a fraction of the model's size at rest. The joints are merged if
-/// both take each vertex of the skin to positions closer than this.
+/// Tolerance for merging two joints of one bone, as a fraction of the model's size at rest. For every vertex of the
+/// skin, the positions to which the two joints take it must be closer together than this.
 const SAME: f64 = 1e-4;
 
 /// Rebinds the skins and meshes of a model to the kept bones.

@@ -1,4 +1,4 @@
-//! Choice of the bones to collapse: repeatedly the bone whose collapse displaces vertices least.
+//! Choice of the bones to collapse. Each step chooses the bone whose collapse displaces vertices least.
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -45,7 +45,8 @@ impl Remap {
         (0..self.follows.len()).filter(|bone| self.is_kept(*bone))
     }
 
-    /// The chain of bones from below the nearest kept bone above `bone` down to `bone` itself, topmost first.
+    /// A chain of bones: the collapsed bones between `bone` and the nearest kept bone above it, topmost first, and then
+    /// `bone` itself.
     pub(super) fn chain(&self, bone: usize) -> Vec<usize> {
         let above = |bone: &usize| self.parents[*bone].filter(|parent| !self.is_kept(*parent));
         let mut chain: Vec<usize> = std::iter::successors(Some(bone), above).collect();
@@ -53,8 +54,8 @@ impl Remap {
         chain
     }
 
-    /// For each bone, a number among the kept bones: its own if it is kept, otherwise the number of the bone that it
-    /// follows.
+    /// For each bone, an index among the kept bones: the bone's own index if it is kept, otherwise the index of the
+    /// bone that its vertices follow.
     pub(super) fn indices(&self) -> Vec<u32> {
         let mut indices = vec![0; self.follows.len()];
         self.kept().zip(0..).for_each(|(bone, index)| indices[bone] = index);
@@ -146,7 +147,8 @@ impl<'a> Choice<'a> {
         };
         let Some(best) = candidates.into_iter().rev().min_by(order) else { return false };
         let Some(into) = self.remap.kept_above(best) else { return false };
-        // These bones get new costs: the bones below follow another bone now, and that bone receives the vertices.
+        // The costs of some bones are outdated. The bones below have another kept bone above them now, and `into` has
+        // gained vertices.
         let below: Vec<usize> =
             self.remap.kept().filter(|bone| self.remap.kept_above(*bone) == Some(best)).collect();
         below.into_iter().chain([into]).for_each(|bone| self.costs[bone] = None);
@@ -165,7 +167,8 @@ impl<'a> Choice<'a> {
         holds
     }
 
-    /// The cost of collapsing a bone: it and the bones collapsed into it then follow the next kept bone above.
+    /// The cost of collapsing a bone. After the collapse, the vertices of the bone and of all bones that collapsed into
+    /// it follow the next kept bone above.
     fn cost(&self, bone: usize) -> Cost {
         let Some(above) = self.remap.kept_above(bone) else { return [f64::INFINITY; 2] };
         let group: Vec<usize> =

@@ -70,7 +70,7 @@ pub(super) fn signs(scales: impl IntoIterator<Item = [f32; 3]>) -> Option<DVec3>
     scales.iter().all(is_even).then(|| DVec3::from(signs.map(f64::from)))
 }
 
-/// The signs of a bone's scale in a clip, valid between keys too; `None` if the scale is not uniform.
+/// The signs of a bone's scale in a clip, valid at keys and between them; `None` if the scale is not uniform.
 pub(super) fn signs_in(clip: &Clip, bone: usize) -> Option<DVec3> {
     signs(
         clip.stored_keys(clip.track(bone, TransformPart::Scale))

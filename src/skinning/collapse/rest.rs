@@ -21,8 +21,8 @@ pub(super) struct Rest {
     pub models: Vec<DAffine3>,
     /// For each bone, the vertices that follow it.
     pub followers: Vec<Vec<Follower>>,
-    /// For each bone, a radius in the model's units: the largest distance from the bone's origin to a vertex that
-    /// follows the bone or a bone below it, or to the origin of a bone below it.
+    /// For each bone, a radius in the model's units: the largest distance of certain points from the bone's origin.
+    /// These points are the origins of the bones below, and the vertices that follow the bone or a bone below.
     pub radii: Vec<f64>,
     /// Half the diagonal of a box around all vertices. Without vertices, the box is around the origins of all bones.
     pub size: f64,

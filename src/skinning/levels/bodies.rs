@@ -27,8 +27,8 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Finds the rigid bodies of some meshes: the bones that are not stretched between any two of the moments. Expects
-    /// at least one moment.
+    /// Finds the rigid bodies of some meshes. A bone forms a body if it is not stretched between any two of the
+    /// moments. Expects at least one moment.
     pub fn new(model: &Model, meshes: &[usize], moments: &[Moment]) -> Self {
         let skins: BTreeSet<usize> = meshes.iter().map(|mesh| model.meshes[*mesh].skin).collect();
         let skins: Vec<(usize, f32)> =
@@ -68,7 +68,7 @@ pub(super) fn common(bodies: &[u32], vertices: &[u32; 3]) -> u32 {
 
 /// Measurements of the bones of some skins at one moment.
 struct Look {
-    /// For each bone of each skin, the dot products of its matrix's columns with each other.
+    /// For each bone of each skin, the dot products between the columns of its matrix.
     squares: Vec<Mat3>,
     /// The largest summand in the computation of a position.
     largest: f32,
@@ -92,16 +92,16 @@ impl Look {
     }
 }
 
-/// Whether two bones stretch equally in every direction, up to [`STRETCH`]. They are given by the products of their
-/// columns.
+/// Whether a bone stretches every direction equally at two moments, with a tolerance of [`STRETCH`]. The arguments are
+/// the dot products between the columns of its matrix at each moment.
 fn is_alike(first: &Mat3, other: &Mat3) -> bool {
     let trace = first.x_axis.x + first.y_axis.y + first.z_axis.z;
-    // A lower bound of the smallest eigenvalue: the product of all three eigenvalues, divided by the squared mean of
-    // the other two.
+    // A lower bound of the smallest eigenvalue: the product of all three eigenvalues, divided by the square of half the
+    // trace. Half the trace is at least the mean of the other two eigenvalues.
     let least = 4.0 * first.determinant() / (trace * trace);
     let off = (*first - *other).to_cols_array().into_iter().fold(0.0, |most: f32, x| most.max(x.abs()));
-    // Three times the largest entry bounds the norm. Squared lengths differ by twice the relative difference of
-    // lengths. The result is false for NaN.
+    // Three times the largest entry bounds the norm of the difference. The relative difference of squared lengths is
+    // twice the relative difference of lengths. The result is false for NaN.
     3.0 * off <= 2.0 * STRETCH * least
 }
 

@@ -17,7 +17,7 @@ use crate::skinning::pose::{Moment, bones_at};
 /// Number of moments between two progress reports.
 const BATCH: usize = 64;
 
-/// The samples of several levels that may have the largest distance of their level at some moment.
+/// Suspects: samples of several levels. Each of them may have the largest distance of its level at some moment.
 pub(super) struct Suspects {
     /// The unit of positions, in the model's units: positions are divided by it.
     unit: f32,
@@ -106,8 +106,8 @@ impl Suspects {
     }
 }
 
-/// The samples of a level that may have its largest distance, their nearby triangles, and a lower bound of the level's
-/// error.
+/// The samples that may have the largest distance of a level, the triangles near these samples, and a lower bound of
+/// the level's error.
 fn suspects_of(
     level: u32,
     sides: &Sides,

@@ -18,12 +18,14 @@ const MOMENTS: usize = 24;
 const UNLIKE: f32 = 2.0;
 
 /// The key poses, in multiples of a common unit, so that numbers have the same magnitude in every model. The first pose
-/// is the rest pose. If its size differs too much from the other poses, the largest of them comes first instead.
+/// is the rest pose. If the rest pose differs too much in size from the other poses, it is left out, and the largest of
+/// the others comes first.
 pub(super) struct Keys {
     pub poses: Vec<Vec<[f32; 3]>>,
     /// The normals of all vertices in the first pose.
     pub normals: Vec<[f32; 3]>,
-    /// Diagonal of the box around the triangles in the first pose, in units of `unit`: 1 to 2, or 0 without extent.
+    /// Diagonal of the box around the triangles in the first pose, in units of `unit`: 1 to 2, or 0 if the box has no
+    /// extent.
     pub size: f32,
     /// The unit of positions: a power of two, in the model's units.
     pub unit: f32,
@@ -59,7 +61,7 @@ impl Keys {
     }
 }
 
-/// The rest pose, followed by at most [`MOMENTS`] evenly spaced moments of the given ones.
+/// The rest pose, followed by at most [`MOMENTS`] of the given moments, evenly spaced.
 pub(super) fn key_moments(moments: &[Moment]) -> Vec<Moment> {
     let every = moments.len().div_ceil(MOMENTS).max(1);
     let played = moments.iter().step_by(every).copied().filter(|moment| *moment != Moment::Rest);

@@ -1,5 +1,5 @@
-//! Pairs of nearby parts of a level and the original mesh. Collapses are local: the vertex into which a vertex
-//! collapses, and the triangles around that vertex, are close to it in every pose.
+//! Pairs of nearby parts of a level and the original mesh. Collapses are local: if a vertex collapses into a target
+//! vertex, the target and the triangles around the target are close to the vertex in every pose.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,8 +13,8 @@ use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::{NO_BODY, Simplified};
 use crate::surface::tangent::Adjacency;
 
-/// The largest number of triangles that are kept as nearest in some pose. Triangles found in earlier poses take
-/// precedence.
+/// The largest number of candidate triangles per point. If there are more, the triangles nearest in the first pose are
+/// kept.
 const MAX: usize = 32;
 
 /// For each item of a sequence, the triangles close to it.
@@ -90,7 +90,7 @@ impl Sides {
         let ring = around(level, &|vertex| vertex);
         let near = Near::of(before(whole, &ring, found, &point, keys, bodies).into_iter());
 
-        // The triangles of the meshes that have an area, listed by the points into which their corners have collapsed.
+        // The meshes' triangles with an area above 0, listed by the points into which their corners have collapsed.
         let has_area = |triangle: &&[u32]| simplified.are_apart([triangle[0], triangle[1], triangle[2]]);
         let area: Vec<u32> = whole.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
         let became = around(&area, &|vertex| found.remap[vertex as usize]);
@@ -124,7 +124,7 @@ impl Sides {
     }
 
     /// All samples of both directions, each with the nearby triangles of the other surface. Samples at vertices come
-    /// first. A sample has at least one triangle.
+    /// first. Samples without nearby triangles are left out.
     pub(super) fn all(&self) -> impl Iterator<Item = (Sample, &[[u32; 3]])> {
         let vertices = (0..self.near.len()).map(|vertex| ([vertex as u32; 3], [1.0, 0.0, 0.0]));
         let forth = vertices.enumerate().map(|(at, sample)| (sample, self.near.triangles_of(at)));
@@ -156,16 +156,16 @@ fn before(
             return Vec::new();
         }
         let is_own = |at: &u32| whole.member_of(&corners_of(level, *at)) == whole.member[vertex as usize];
-        // There are no candidates for a vertex that no triangle uses. The replacement itself may be a wedge (a vertex
-        // at the same position with other attributes) that no triangle of the level uses.
+        // There are no candidates for a vertex that no triangle uses. The vertex that replaces it need not be in a
+        // triangle of the level: another vertex at the same position, with other attributes, may be used instead.
         let target = remap[vertex as usize];
         let own = || ring.two_rings(target, level, point).into_iter().filter(is_own).collect();
         let candidates = rings.entry((target, whole.member[vertex as usize])).or_insert_with(own);
         if !candidates.is_empty() || !is_used[vertex as usize] {
             return search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], candidates);
         }
-        // Part of the mesh, or the whole mesh, has become a point, so no triangle of the mesh is around the vertex. The
-        // mesh's nearest triangle represents the vertex instead.
+        // The whole mesh, or the part of it around the vertex, has become a point. No triangle of the mesh is around
+        // the vertex, so the nearest triangle of the mesh is used instead.
         let member = whole.member[vertex as usize];
         let all = owned.entry(member).or_insert_with(|| (0..level.len() as u32 / 3).filter(is_own).collect());
         search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], all)
@@ -311,7 +311,8 @@ impl Nearest {
     }
 }
 
-/// Groups of the mesh's triangles: one group per point of the level into which corners have collapsed.
+/// Groups of the mesh's triangles, one group per point of the level. A triangle is in the groups of the points into
+/// which its corners have collapsed.
 struct Clusters<'a> {
     around: &'a Around,
     /// For each point, a sphere around its triangles in the first pose.
@@ -352,7 +353,7 @@ impl<'a> Clusters<'a> {
     }
 
     /// The triangle around `points` that is nearest to `wanted` in the first pose. Only triangles that pass `is_own`
-    /// count. `likely` is one of the points, which is examined first.
+    /// count. `likely` is a triangle that is examined first; `None` if there is no guess.
     fn nearest(
         &self,
         search: &Search<'_>,

@@ -63,9 +63,9 @@ impl Welded {
     /// the number of triangles.
     ///
     /// `triangles` is the previous level, and `remap` gives the collapses. Each triangle of the result has three
-    /// different points. A collapsed vertex is replaced by a used vertex at its new point. Among several, the vertex
-    /// with the normal closest to the old normal is taken, or, in flat-shaded triangles, closest to the normal of the
-    /// new triangle.
+    /// different points. A collapsed vertex is replaced by a used vertex at its new point. Among several such vertices,
+    /// the one with the normal closest to the old normal is taken. In flat-shaded triangles, it is the one with the
+    /// normal closest to the new triangle's normal.
     ///
     /// A mesh without remaining triangles becomes a point: one of its vertices replaces all others, and one triangle
     /// has this vertex in all three corners. Such triangles are not counted.

@@ -101,7 +101,7 @@ impl<'a> Whole<'a> {
     }
 
     /// The positions of some vertices at a moment, in multiples of `unit`. `bones` are the bones' model-space matrices
-    /// then. `vertices` has one list per mesh, in the mesh's own vertex indices.
+    /// at that moment. `vertices` has one list per mesh, in the mesh's own vertex indices.
     pub fn some_points(
         &self,
         moment: Moment,

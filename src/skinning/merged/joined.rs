@@ -39,8 +39,8 @@ pub(super) fn morphs(mesh: &Mesh) -> bool {
 }
 
 /// Joins meshes, keeping the order of vertices and triangles. Expects at least one mesh. If the meshes morph, they must
-/// have the same weights. `own` has the own level of each mesh at every level of the object. `errors` are the errors of
-/// levels 1, 2 ….
+/// have the same weights. For each mesh, `own` has the mesh's own level at every level of the object. `errors` are the
+/// errors of levels 1, 2 ….
 pub(super) fn joined(
     model: &Model,
     meshes: &[&Mesh],
@@ -94,8 +94,8 @@ fn starts(meshes: &[&Mesh]) -> Result<Vec<u32>, InputError> {
     Ok(meshes.iter().map(start).collect())
 }
 
-/// The partners of all vertices: the vertices that replace them at coarser levels. Own levels of a mesh that no level
-/// of the object uses are skipped. Empty if a mesh has levels but no partners.
+/// The partners of all vertices: the vertices that replace them at coarser levels. A mesh's own level is skipped if no
+/// level of the object uses it. The result is empty if a mesh has levels but no partners.
 fn partners(meshes: &[&Mesh], own: &[Vec<u32>], starts: &[u32]) -> Vec<u32> {
     let is_lacking = |mesh: &&Mesh| mesh.partners.is_empty() && !mesh.levels.is_empty();
     if meshes.iter().any(is_lacking) || meshes.iter().all(|mesh| mesh.partners.is_empty()) {

@@ -39,7 +39,7 @@ impl PartKey {
         })
     }
 
-    /// Whether meshes with the key `other` can join without losing a texture sampling.
+    /// Whether meshes with the key `other` can join a part with this key without losing a texture sampling.
     fn covers(&self, other: &Self) -> bool {
         let covers = |own: Option<Sampling>, other: Option<Sampling>| other.is_none() || own == other;
         covers(self.sampling, other.sampling) && covers(self.normal_sampling, other.normal_sampling)
@@ -99,8 +99,8 @@ fn has_other(parts: &[Sorted], at: usize, fits: impl Fn(&Sorted, &Sorted) -> boo
     parts.iter().enumerate().any(|(other, part)| other != at && fits(part, &parts[at]))
 }
 
-/// Merges the part at `at` into the fitting part with the most triangles, or the first of several. If that part lacks a
-/// sampling, it gets the sampling of the merged part.
+/// Merges the part at `at` into the fitting part with the most triangles. Among equals, the first is taken. If that
+/// part lacks a texture sampling, it gets the sampling of the part at `at`.
 fn give_up(model: &Model, parts: &mut Vec<Sorted>, at: usize, fits: impl Fn(&Sorted, &Sorted) -> bool) {
     let given = parts.remove(at);
     let mut most: Option<&mut Sorted> = None;

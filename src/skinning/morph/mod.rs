@@ -10,5 +10,5 @@ pub use pass::MorphPass;
 
 /// Bound on the difference between CPU and GPU for one component of a morphed vertex, on any device: 5e-6. It holds for
 /// four targets with deltas of at most 1, weights of at most 1.5, and vertex components of at most 2. Each sum is at
-/// most 8; it adds a rounding error of 2ε, and its product another 2ε, with ε = 2⁻²⁴.
+/// most 8. The addition has a relative rounding error of 2ε, and the product that it adds another 2ε, with ε = 2⁻²⁴.
 pub const MORPH_BOUND: f32 = 5e-6;

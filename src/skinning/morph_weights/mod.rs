@@ -18,8 +18,9 @@ pub use pass::{MorphWeightsJob, MorphWeightsPass};
 /// Bound on the difference between CPU and GPU for one morph weight, on any device: 1.3e-4. It holds for values and
 /// tangents (per second) of at most 1, keys 1/8 to 1 s apart, and times up to 16 s.
 ///
-/// Derivation, with ε = 2⁻²⁴: a time has an error of 3ε of 16 s, which is 2.3e-5 of a segment of 1/8 s. The slope of a
-/// spline in a segment is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline adds about 40ε.
+/// Derivation, with ε = 2⁻²⁴: a time of 16 s has a relative error of 3ε, which is 2.3e-5 of a segment of 1/8 s. The
+/// slope of a spline in a segment is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline adds
+/// about 40ε.
 pub const MORPH_WEIGHTS_BOUND: f32 = 1.3e-4;
 
 /// The location of one clip's keyframes in a [`WeightSet`].

@@ -18,10 +18,10 @@ pub use pass::PalettePass;
 /// palette's largest component (at least 1). It holds for matrices whose columns have a length of at least ½ and angles
 /// of at least 45° between them.
 ///
-/// Derivation, with ε = 2⁻²⁴: a product of rows has an error of 16ε. The axes of Gram–Schmidt have twice this error
-/// divided by the length (64ε), again divided by the sine (128ε), and their cross product 256ε. The quaternion's
-/// components are differences of axes divided by at least 1 and have 512ε. The dual part has the same error times the
-/// translation: 3.1e-5.
+/// Derivation, with ε = 2⁻²⁴: a product of rows has an error of 16ε. The first axis of Gram–Schmidt has twice this
+/// error, divided by the length: 64ε. For the second axis, the error is also divided by the sine of the angle: 128ε.
+/// The cross product of both axes has 256ε. The quaternion's components are differences of the axes' components,
+/// divided by at least 1: 512ε. The dual part has this error times the translation: 3.1e-5.
 pub const PALETTE_BOUND: f32 = 3.2e-5;
 
 /// The transform of a bone as a stretch followed by a rigid motion, in the layout of the kernels.

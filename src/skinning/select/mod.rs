@@ -4,8 +4,8 @@
 //!
 //! Bones that are not updated thus save the skinning of their vertices, and invisible instances cost nothing. The order
 //! of the list may differ between runs; the set of clusters does not. Vertices of an invisible instance keep their
-//! values. Once the instance is visible again, all of it is skinned. The same holds for clusters beyond its level of
-//! detail: they are skinned when the level becomes finer.
+//! values. Once the instance is visible again, all of it is skinned. Clusters beyond an instance's level of detail also
+//! keep their values, and are skinned when a finer level includes them.
 
 #[cfg(feature = "gpu")]
 mod pass;

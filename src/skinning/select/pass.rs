@@ -9,20 +9,20 @@ use crate::skinning::buffers::{ActiveClusters, DISPATCHED_WORDS, MeshBuffers, Sk
 /// The inputs of a cluster selection, and the state that it keeps between frames.
 #[derive(Debug, Clone)]
 pub struct ClusterSelectBuffers {
-    /// The set of bones of each instance that were updated since the last selection. A set takes
+    /// For each instance, the set of bones that were updated since the last selection. A set takes
     /// [`MeshBuffers::mask_words`] words: one bit per bone, in the skeleton's order.
     ///
     /// Under a gate, [`SkinFrame`](crate::skinning::frame::SkinFrame) uses
     /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) here. If a bone is set, all bones
-    /// below it must be set too.
+    /// below it must also be set.
     pub updated_bones: Buffer<u32>,
     /// The state of each instance in the previous frame, in 4 + [`MeshBuffers::targets`] words. The words are:
     /// influence fade (as bits), largest number of influences, level of detail, visibility, and the weights of the
     /// morph targets (as bits).
     ///
-    /// The visibility word is 0 for an invisible instance, 1 for an instance that has just become visible, and 2 for
-    /// one that was visible in the previous frame too. All words are 0 at first, so the first frame skins everything
-    /// visible.
+    /// The visibility word is 0 for an invisible instance, 1 for an instance that has just become visible, and 2 for an
+    /// instance that was also visible in the previous frame. All words are 0 at first, so the first frame skins
+    /// everything visible.
     pub skinned: Buffer<u32>,
 }
 

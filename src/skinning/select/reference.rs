@@ -20,7 +20,7 @@ pub struct Now<'a> {
 pub struct Skinned {
     /// The instance's level of detail in the previous frame.
     pub instance_lod: InstanceLod,
-    /// Visibility: 0 if invisible, 1 if newly visible, and 2 if visible in the frame before too; see
+    /// Visibility: 0 if invisible, 1 if newly visible, and 2 if also visible in the frame before; see
     /// [`ClusterSelectBuffers::skinned`](crate::skinning::select::ClusterSelectBuffers::skinned).
     pub seen: u32,
     /// The instance's morph weights in the previous frame.

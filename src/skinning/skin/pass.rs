@@ -66,7 +66,8 @@ impl SkinPass {
 
     /// As [`SkinPass::prepare_active`], but writes to pages that [`PagesPass`](crate::skinning::pages::PagesPass) has
     /// assigned. Clusters without a page are skipped. If the pages keep previous positions ([`PageBuffers::keeping`]),
-    /// each vertex's position before or after the change is stored there, depending on the cluster's state.
+    /// the pass also stores a previous position for each vertex. It is the position before or after this skinning,
+    /// depending on the cluster's state.
     ///
     /// # Errors
     /// The same errors as [`SkinPass::prepare_active`]. Also [`InputError`] if only one of `pages` and `active` keeps

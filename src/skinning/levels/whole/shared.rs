@@ -13,8 +13,8 @@ use crate::skinning::pose::{Moment, Pose};
 /// Meshes with different skins or nodes compute the same position in different ways.
 const TOLERANCE: f32 = 5e-7;
 
-/// The largest number of positions compared with one position. A mesh that is a point in the first pose has many
-/// positions there.
+/// The largest number of positions in a grid cell that are compared with one position. The limit matters for a mesh
+/// that is a point in the first pose: all of its positions lie in one cell.
 const MAX_COMPARED: usize = 64;
 
 /// For each shared vertex (mesh, vertex), the coincident vertex (mesh, vertex) of an earlier mesh.
@@ -22,8 +22,9 @@ pub(crate) type Shared = HashMap<(usize, u32), (usize, u32)>;
 
 /// Finds the vertices that meshes share in all of the given poses, and the groups of meshes that share any vertex.
 ///
-/// Groups are ascending, and ordered by their first mesh. A mesh that shares nothing forms its own group. Vertices that
-/// are not at a border of either mesh are not shared: a copy of a surface is another surface.
+/// The meshes of a group are in ascending order, and groups are ordered by their first mesh. A mesh that shares nothing
+/// forms its own group. Vertices that are not at a border of either mesh are not shared, so a copy of a surface remains
+/// a separate surface.
 pub(crate) fn shared(model: &Model, moments: &[Moment]) -> (Shared, Vec<Vec<usize>>) {
     if model.meshes.len() < 2 {
         return (Shared::new(), (0..model.meshes.len()).map(|mesh| vec![mesh]).collect());
@@ -66,7 +67,7 @@ struct Places {
     poses: Vec<Vec<[f32; 3]>>,
     /// For each vertex, the first vertex at the same position.
     point: Vec<u32>,
-    /// The positions that triangles use. Each is given by its first vertex; ascending.
+    /// The positions that triangles use. Each is given by its first vertex, in ascending order.
     used: Vec<u32>,
     /// The used positions that lie at a border of the mesh.
     border: HashSet<u32>,
@@ -126,7 +127,7 @@ struct Known {
     is_border: bool,
 }
 
-/// Finds positions by a grid over the first pose.
+/// Finds coincident positions with a grid over the first pose.
 struct Search<'a> {
     tolerances: &'a [f32],
     known: Vec<Known>,

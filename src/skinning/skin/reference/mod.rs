@@ -91,8 +91,8 @@ fn dual_mean(bones: &[DualBone], left: &[Influence]) -> Affine {
     let mut sum = DualBone { real: zero, dual: zero, diagonal: zero, above: zero };
     for influence in weaker_first(left) {
         let bone = &bones[influence.bone as usize];
-        // The quaternions q and −q give the same rotation. Uses the sign in the hemisphere of the strongest bone's
-        // quaternion.
+        // The quaternions q and −q give the same rotation. The one in the hemisphere of the strongest bone's quaternion
+        // is used.
         let side = if dot4(bone.real, strongest.real) < 0.0 { -influence.weight } else { influence.weight };
         sum.real = added(sum.real, side, bone.real);
         sum.dual = added(sum.dual, side, bone.dual);
