@@ -1,5 +1,6 @@
 //! A set of clips of one skeleton, in the layout that crowds play from. The arrays of all clips lie one after another. Tracks
-//! share timelines (lists of key times). The first timeline of a clip contains the times of all its tracks.
+//! with equal key times share a timeline (list of key times). The first timeline of a clip contains the key times of all the
+//! clip's tracks.
 
 use std::collections::HashMap;
 
@@ -16,8 +17,8 @@ pub struct SetTrack {
     pub timeline: Option<u32>,
     /// Interpolation of the values between keys.
     pub interpolation: Interpolation,
-    /// Index of the track's first value in [`ClipSet::values`]. A constant spline has three values; for it, this is the index of
-    /// the middle one.
+    /// Index of the track's first value in [`ClipSet::values`]. For a constant spline, which has three values, it is the index of
+    /// the middle value.
     pub first_value: u32,
 }
 
@@ -46,7 +47,7 @@ impl ClipSet {
     /// Builds a set from clips of the same skeleton.
     ///
     /// # Errors
-    /// [`InputError`] for an empty list, for clips with different numbers of bones, and for 2²⁸ values or times or more: kernels
+    /// [`InputError`] for an empty list, for clips with different numbers of bones, and for 2²⁸ or more values or times: kernels
     /// address them by `u32` byte offsets.
     pub fn new(clips: &[&Clip]) -> Result<Self, InputError> {
         let Some(first) = clips.first() else {
@@ -134,8 +135,8 @@ impl ClipSet {
         self.timelines[clip.first_timeline as usize].keys + 1
     }
 
-    /// Returns an error unless `clips` are the clips that the set was made from, in the same order. Otherwise data computed from
-    /// them would be assigned to the wrong clips.
+    /// Returns an error unless `clips` are the clips that the set was made from, in the same order. Data computed from other
+    /// clips would be assigned to the wrong clips of the set.
     pub(crate) fn check_clips(&self, clips: &[&Clip]) -> Result<(), InputError> {
         InputError::check_same("clips.len", clips.len(), self.clips.len(), "those of the set")?;
         let mut values = self.values.as_slice();

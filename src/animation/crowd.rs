@@ -68,8 +68,8 @@ impl ClipBuffers {
 /// Animated instances of one skeleton on the device. The caller may read and bind all buffers.
 #[derive(Debug, Clone)]
 pub struct Crowd {
-    /// The clip that each instance plays, per layer, at index `layer · len + instance`. The caller may rewrite it: `write_at`
-    /// from `layer · len` on replaces one layer. Every clip index must exist in the set.
+    /// The clip that each instance plays, per layer, at index `layer · len + instance`. The caller may rewrite the buffer:
+    /// `write_at` at `layer · len` replaces one layer. Every clip index must exist in the set.
     pub instances: Buffer<Instance>,
     /// Keyframe cursors, written by [`crate::animation::keyframe_cursor::KeyframeCursorPass`]: [`ClipSet::timelines_a_clip`]
     /// cursors per entry of `instances`.
@@ -103,7 +103,7 @@ impl Crowd {
     /// Allocates a crowd with layers above the base. `base` and the layers play clips of the set.
     ///
     /// # Errors
-    /// [`InputError`] in these cases; [`GpuError`] for errors of the device:
+    /// [`GpuError`] for errors of the device; [`InputError`] in these cases:
     ///
     /// - `base` is empty;
     /// - an instance's clip is not in the set;

@@ -15,7 +15,7 @@ pub enum Wrap {
     /// The clip repeats. The clip's end coincides with its start.
     #[default]
     Loop = 0,
-    /// Before its start the clip holds its first pose, and after its end its last pose.
+    /// The clip holds its first pose before its start, and its last pose after its end.
     Clamp = clock::WRAP_CLAMP,
 }
 

@@ -7,9 +7,9 @@
 //! `below + (layer − below) · weight · mask`
 //!
 //! Rotations are blended along the chord to the nearer of q and −q, then normalized (nlerp). At the weights 0 and 1 they are
-//! exact. In between they are on the shortest arc, but their speed is not constant. The largest deviation is 0.002 rad for
-//! rotations 45° apart, 0.016 rad for 90° and 0.14 rad for 180°. A layer costs no memory reads on bones where weight times mask
-//! is 0.
+//! exact. In between, they follow the shortest arc, but not at constant speed. Compared with constant speed (slerp), the largest
+//! deviation is 0.002 rad for rotations 45° apart, 0.016 rad for 90° and 0.14 rad for 180°. A layer costs no memory reads on
+//! bones where weight times mask is 0.
 //!
 //! A cross-fade of two clips is one layer without a mask. A walk with a waving arm is one layer with the mask of the arm
 //! ([`mask_below`]).
@@ -48,8 +48,8 @@ pub struct AnimationLayer {
 }
 
 impl AnimationLayer {
-    /// Creates a layer without a mask, which affects all bones. `instances` and `weights` have one entry per instance of the
-    /// crowd.
+    /// Creates a layer that affects all bones, because it has no mask. `instances` and `weights` have one entry per instance of
+    /// the crowd.
     pub fn new(instances: Vec<Instance>, weights: Vec<f32>) -> Self {
         Self { instances, weights, mask: None }
     }

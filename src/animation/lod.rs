@@ -1,6 +1,6 @@
-//! Animation level of detail of an instance in its view: its detail by distance (thesis A, section 12.10), and the motion that it
-//! may miss before the error is visible. The host quantizes these values to integers, so that every device makes the same
-//! decisions.
+//! Animation level of detail of an instance in a view: the detail by distance (thesis A, section 12.10), and the motion that the
+//! instance may miss before the error is visible. The host quantizes these values to integers, so that every device makes the
+//! same decisions.
 
 use crate::InputError;
 use crate::shared::animation::gate_state;
@@ -103,8 +103,8 @@ impl Range {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
     /// Focal length in pixels: the size of one metre at a distance of one metre on the optical axis. It is half the picture's
-    /// height in pixels, divided by the tangent of half the vertical field of view. If the values of both directions differ, use
-    /// the larger one.
+    /// height in pixels, divided by the tangent of half the vertical field of view. If the horizontal and the vertical value
+    /// differ, use the larger one.
     pub focal_pixels: f32,
     /// Distance of the near plane in metres.
     pub near: f32,

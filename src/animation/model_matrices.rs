@@ -12,8 +12,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 /// record of prepared consumers.
 ///
 /// A crowd under [`Gate::Bounded`](super::Gate::Bounded) cannot be skinned by dual quaternions, because the gate's error bound
-/// holds for linear blending only. Preparing the gate therefore excludes dual quaternion skinning, and the reverse, as long as
-/// any handle exists.
+/// holds for linear blending only. Preparing one of the two therefore excludes the other, as long as any handle exists.
 #[derive(Debug, Clone)]
 pub struct ModelMatrices {
     matrices: Buffer<Affine>,
@@ -28,8 +27,8 @@ impl ModelMatrices {
         Self { matrices: matrices.clone(), updated_bones: None, consumer: ExclusiveConsumer::default() }
     }
 
-    /// Returns a handle to the same matrices, with a record of updates. Frames then change only matrices whose bit is set in
-    /// `updated`.
+    /// Returns a handle to the same matrices, with a record of updates. Consumers of this handle assume that frames change only
+    /// matrices whose bit is set in `updated`.
     #[must_use]
     pub fn with_updated_bones(&self, updated: &UpdatedBones) -> Self {
         Self { updated_bones: Some(updated.clone()), ..self.clone() }
@@ -103,11 +102,11 @@ impl ExclusiveConsumer {
         self.0.get().map_or(Ok(()), |first| refuse_other(*first, consumer))
     }
 
-    /// Returns an error if a list of active bones belongs to another crowd. Otherwise the gate's error bound would not be
+    /// Returns an error if a list of active bones belongs to another crowd. With such a list, the gate's error bound would not be
     /// recorded for this crowd.
     ///
     /// # Errors
-    /// [`InputError`] if the two records are not shared.
+    /// [`InputError`] if `of_list` and `self` are not one shared record.
     pub(crate) fn check_same(&self, of_list: &Self) -> Result<(), InputError> {
         if Arc::ptr_eq(&self.0, &of_list.0) {
             return Ok(());

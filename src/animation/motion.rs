@@ -1,6 +1,6 @@
 //! Bounds on the motion of each bone along a clip. They bound the error of a pose that is not updated. Motion is a path length:
-//! the length of the path of a bone's local transform along the clip's common timeline. It is weighted by how far the bone moves
-//! points of the model.
+//! the length of the path of a bone's local transform along the clip's common timeline. This length is weighted by how far the
+//! bone moves points of the model.
 //!
 //! The path length of a translation, rotation or scale is the sum of its changes from key to key. It is never shorter than the
 //! direct change between two times. `docs/pixel-bounds.md` derives the bound on a point's error and the path lengths of each
@@ -28,7 +28,7 @@ pub struct Path {
     pub jumps: Vec<f64>,
     /// Distance from the value at the clip's end to the value at its start.
     pub wrap: f64,
-    /// Whether no bound on the speed is known somewhere along the clip.
+    /// Whether the speed has no known bound somewhere along the clip.
     pub is_boundless: bool,
 }
 
@@ -167,8 +167,8 @@ impl<'a> Keys<'a> {
         Some(if is_chord && quarter > 0.0 { way * quarter.tan() / quarter } else { way })
     }
 
-    /// Bézier control points of the spline between `key` and the next key. The spline's tangents are already in units of the
-    /// segment.
+    /// Bézier control points of the spline between `key` and the next key. The stored tangents are already multiplied by the
+    /// duration of the segment.
     fn bezier(&self, key: usize) -> [Value; 4] {
         let [start, leaving, arriving, end] = [1, 2, 3, 4].map(|at| self.values[3 * key + at]);
         let off = |point: Value, tangent: Value, side: f64| -> Value {
@@ -266,7 +266,7 @@ pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
         for above in path {
             let square = origin(bone).distance_squared(origin(above)) + own;
             let [points, across, along] = &mut sums[above];
-            // Two of the three axis directions lie across an axis.
+            // Of the three axis directions, two lie across any given axis and one lies along it.
             (*points, *across, *along) = (*points + 1.0, *across + square * 2.0 / 3.0, *along + square / 3.0);
         }
     }
@@ -281,8 +281,8 @@ pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
 /// leave.
 ///
 /// A bone that moves at rate r and gets the part s of the whole budget is sampled r/s times. A subtree with budget b needs at
-/// least K/b samples. For a leaf, K = r. For a bone with subtrees below it, K = (√r + √ΣK)², and the bone takes the fraction
-/// √r/(√r + √ΣK).
+/// least K/b samples. For a leaf, K = r. For a bone with subtrees below it, let ΣK be the sum of the subtrees' K. Then K = (√r +
+/// √ΣK)², and the bone takes the fraction √r/(√r + √ΣK).
 pub fn budget_fractions(skeleton: &Skeleton, rates: &[f64]) -> Vec<f64> {
     let bones = skeleton.bones();
     let mut below = vec![0.0; rates.len()];

@@ -63,7 +63,8 @@ impl Order {
         // Chains found so far, by level.
         let mut chains: Vec<Vec<Chain>> = Vec::new();
         let roots = (0..bones.len() as u32).filter(|bone| bones[*bone as usize].parent.is_none());
-        // Stack of chains that are still to be processed: the first bone of each and its level. The last entry is processed next.
+        // Stack of chains that are still to be processed: the first bone and the level of each chain. The last entry is processed
+        // next.
         let mut waiting: Vec<(u32, usize)> = roots.rev().map(|root| (root, 0)).collect();
         while let Some((first_bone, level)) = waiting.pop() {
             let first = slots.len() as u32;
@@ -122,8 +123,8 @@ fn other_children(skeleton: &Skeleton, target: &[Option<u32>]) -> Vec<Vec<u32>> 
     others
 }
 
-/// For each bone, the child that continues its chain. It is the child with the most levels of chains in its subtree or, if equal,
-/// the most bones.
+/// For each bone, the child that continues its chain. It is the child whose subtree has the most levels of chains. Among equals,
+/// it is the child whose subtree has the most bones.
 fn remap(skeleton: &Skeleton) -> Vec<Option<u32>> {
     let mut target: Vec<Option<u32>> = vec![None; skeleton.len()];
     // Levels of chains that a bone's subtree needs, counting the chain through the bone as the first.

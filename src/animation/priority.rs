@@ -287,7 +287,7 @@ mod tests {
         assert!(found.keys.iter().all(|key| key.terms[..3] == [0.0; 3]));
     }
 
-    /// Translations below a bone with another scale count by their size in model space, and noise stays noise.
+    /// A translation below a scaled bone counts by its size in model space. Noise counts as 0 at every scale.
     #[test]
     fn units_do_not_matter() {
         // Compares a model 2 m tall with the same model in other units: bones are scaled and animated accordingly. The arm's

@@ -2,7 +2,8 @@
 //! place. The caller moves the character by the root motion instead.
 //!
 //! [`RootMotion::extract`] separates the motion once per clip, at load time. [`RootMotion::delta`] returns the motion of an
-//! instance between two times. The interval may span any number of loops, run backwards, and reach the ends of a clamped clip:
+//! instance between two times. The interval may span any number of loops, run backwards, and reach the ends of a clamped clip. A
+//! delta has this property:
 //!
 //! `world(to) = world(from) · delta(from, to)`
 //!
@@ -11,16 +12,16 @@
 //!
 //! # What is taken
 //!
-//! Let p and q be the root bone's position and rotation in model space at a given time. Let p₀ and q₀ be the same at the clip's
-//! start. The extracted motion first rotates by the *yaw* about the vertical axis (+Y) through p₀. It then translates by the
-//! components of p − p₀ that [`Taken`] selects.
+//! Let p and q be the root bone's position and rotation in model space at a given time. Let p₀ and q₀ be the bone's position and
+//! rotation at the clip's start. The extracted motion first rotates by the *yaw* about the vertical axis (+Y) through p₀. It then
+//! translates by the components of p − p₀ that [`Taken`] selects.
 //!
-//! The yaw is the twist of q · q₀⁻¹ about the vertical: the rotation that remains after its tilt is undone along the shortest
+//! The yaw is the twist of q · q₀⁻¹ about the vertical: the rotation that remains after the tilt is undone along the shortest
 //! arc. Everything else stays in the pose. Thus motion · pose in place = pose, up to rounding. If a rotation both turns and tilts
-//! between two keys, this holds within [`YAW_BOUND`], because the rotation is split into short linear segments.
+//! between two keys, the equation holds within [`YAW_BOUND`], because the rotation is split into short linear segments.
 //!
-//! The ancestors of the root bone must not move in the clip. They may rotate, mirror and scale it (for exporters' axes and
-//! units). If the yaw is taken, their scale must be uniform and must not mirror.
+//! The ancestors of the root bone must not move in the clip. They may rotate, mirror and scale the root bone, as exporters do to
+//! convert axes and units. If the yaw is taken, their scale must be uniform and must not mirror.
 
 use crate::InputError;
 use crate::animation::instance::Instance;
@@ -40,10 +41,10 @@ use rigid::Rigid;
 /// Largest angle, in radians, between motion · pose in place and the original pose. It applies between keys of a rotation whose
 /// yaw is taken, for roots that tilt by less than 60°.
 ///
-/// Between linear keys that rotate about the vertical only, the angle is 0. Otherwise a segment is split into pieces of at most
-/// [`PIECE`], or into [`SPLINE_PIECES`] for a spline. In each piece, yaw and tilt advance at constant speed. The error is an
-/// eighth of the square of a piece times the curvature of the yaw, which tan(tilt) bounds. Measured on random keys, it is 7e-5
-/// between linear keys and 2.6e-4 on splines with random tangents.
+/// Between linear keys that rotate about the vertical only, the angle is 0. Otherwise, a linear segment is split into pieces of
+/// at most [`PIECE`], and a spline segment into [`SPLINE_PIECES`] pieces. In each piece, yaw and tilt advance at constant speed.
+/// The error is ⅛ · piece² · curvature of the yaw, and tan(tilt) bounds this curvature. On random keys, the measured error is
+/// 7e-5 between linear keys, and 2.6e-4 on splines with random tangents.
 pub const YAW_BOUND: f64 = 5e-4;
 
 /// Largest rotation, in radians, of one linear piece of a segment: 1°.
@@ -104,9 +105,8 @@ impl RootMotion {
         extract::extract(skeleton, clip, bone, taken)
     }
 
-    /// Motion of an instance between two times: a rotation about +Y and a translation in metres, in the model space of the
-    /// instance at `from`. Times are in seconds since the instance's start, as in `KeyframeCursorJob::set`. `to` may be before
-    /// `from`.
+    /// Motion of an instance between two times: a rotation about +Y and a translation in metres, in the instance's model space at
+    /// time `from`. Times are in seconds since the instance's start, as in `KeyframeCursorJob::set`. `to` may be before `from`.
     ///
     /// # Errors
     /// [`InputError`] if a time is not finite, or if the instance's start or rate is out of range ([`Instance::validate`]).

@@ -14,11 +14,12 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 /// Each consumer of the matrices is a reader ([`UpdatedBones::reader`]). Every [`SkinFrame`](crate::skinning::frame::SkinFrame)
 /// and [`PagedSkin`](crate::skinning::paged::PagedSkin) registers a reader of its own. After an update, the last reader to be
 /// recorded clears the bits. Until then, a reader that is recorded again sees all bits again. It may repeat work but never misses
-/// any. Readers that take turns, each skipping the other's frames, never clear the bits. A reader that is never recorded also
-/// blocks clearing, so drop it.
+/// any. If readers take turns, so that each frame is read by only one of them, the bits are never cleared. A reader that is never
+/// recorded also blocks clearing, so drop it.
 ///
 /// The order of recording matters: submit encoders in the order in which they were recorded. If an encoder is not submitted and
-/// other readers clear the bits, its readers have missed updates; prepare their skinning again. Clones share bits and readers.
+/// other readers clear the bits, the readers recorded in that encoder have missed updates. Prepare their skinning again. Clones
+/// share bits and readers.
 #[derive(Debug, Clone)]
 pub struct UpdatedBones {
     bits: Buffer<u32>,
@@ -79,8 +80,8 @@ impl UpdatedBones {
         Self { bits, readers: Arc::default() }
     }
 
-    /// Buffer with the bits, to bind. Code that records kernels which set bits must then call [`UpdatedBones::update`].
-    /// [`CompactJob`](super::compact::CompactJob) calls it itself.
+    /// Buffer with the bits, to bind. Code that records a kernel that sets bits must also call [`UpdatedBones::update`].
+    /// [`CompactJob`](super::compact::CompactJob) makes this call itself.
     pub fn bits(&self) -> &Buffer<u32> {
         &self.bits
     }

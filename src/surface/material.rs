@@ -44,8 +44,8 @@ pub struct ReliefMaterial {
     pub ambient: f32,
     /// Number of height samples between a point and the light for a soft shadow, 1 to 1024.
     pub shadow_steps: u32,
-    /// Ratio at which a soft shadow becomes fully dark, > 0. The ratio compares a sample on the path to the light with the shaded
-    /// point. It is the height of the surface above the path, divided by the height that the path has gained.
+    /// Ratio at which a soft shadow becomes fully dark, > 0. Each height sample on the path to the light has a ratio: the height
+    /// of the surface above the path, divided by the path's rise since the shaded point.
     pub softness: f32,
 }
 

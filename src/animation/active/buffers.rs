@@ -100,8 +100,8 @@ impl Active {
         })
     }
 
-    /// Word range of the updated bones in [`Active::bits`]: the active bones and all their descendants. The frame updates their
-    /// model matrices.
+    /// Range of words in [`Active::bits`] that marks the updated bones. The updated bones are the active bones and all their
+    /// descendants. The frame updates their model matrices.
     pub fn updated_words(&self) -> std::ops::Range<usize> {
         let words = self.instances.len() * self.words as usize;
         2 * words..3 * words

@@ -1,7 +1,7 @@
 //! Clip clocks. A clip clock is the integer position of an instance on the timeline that all bones of its clip share. Gates
 //! decide by clip clocks, so this operation runs before `animation/gate`.
 //!
-//! The operation also finds the instances that must be sampled in full:
+//! The operation also finds the instances that must be sampled in full. Instances are sampled in full:
 //!
 //! - in their first frame, and after they were hidden;
 //! - when their clip changes;
@@ -51,7 +51,7 @@ impl ClipClock {
         Self { row, fraction_and_reason, clip, ahead_row: row, ahead_fraction: fraction }
     }
 
-    /// Whether bones may be sampled ahead of the frame's time: the look-ahead pose differs from the current pose.
+    /// Whether the look-ahead pose differs from the current pose, so that bones may be sampled ahead of the frame's time.
     pub fn is_ahead(&self) -> bool {
         (self.ahead_row, self.ahead_fraction) != (self.row, self.fraction())
     }

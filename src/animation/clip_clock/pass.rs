@@ -64,8 +64,8 @@ pub type ClipClockJob = ParamsJob<ClipClockParams>;
 
 impl ClipClockJob {
     /// Sets the times for the next submission, in seconds. `elapsed` is the crowd's time, as in
-    /// [`super::super::keyframe_cursor::KeyframeCursorJob::set`]. `ahead` is how far beyond `elapsed` bones may be sampled
-    /// ([`Frame::ahead`](crate::animation::gate::Frame::ahead)).
+    /// [`super::super::keyframe_cursor::KeyframeCursorJob::set`]. `ahead` is how far bones may be sampled beyond the time
+    /// `elapsed` ([`Frame::ahead`](crate::animation::gate::Frame::ahead)).
     ///
     /// # Errors
     /// [`InputError`] if a time is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`] for errors

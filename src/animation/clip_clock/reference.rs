@@ -24,7 +24,7 @@ pub struct PlayedCrowd<'a> {
     pub lods: &'a [Lod],
     /// Seconds since the instances started.
     pub elapsed: f32,
-    /// How far beyond `elapsed` bones may be sampled, in seconds; 0 disables sampling ahead.
+    /// How far bones may be sampled beyond the time `elapsed`, in seconds; 0 disables sampling ahead.
     pub ahead: f32,
 }
 

@@ -39,7 +39,7 @@ impl GatedFrame {
     /// Compiles and prepares all passes of a frame. Rotations use the crowd's rotation path between keys.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) in these cases; [`GpuError`](crate::gpu::GpuError) for errors of the device:
+    /// [`GpuError`](crate::gpu::GpuError) for errors of the device; [`InputError`](crate::InputError) in these cases:
     ///
     /// - the crowd is of another skeleton, or `clips` is another set than the crowd's;
     /// - the gate's bones, clips or rotation path ([`Crowd::path`]) differ from the crowd's;
@@ -77,7 +77,8 @@ impl GatedFrame {
     }
 
     /// Sets the gate's frame and the time in seconds for the next submission. At `elapsed` 0, the clip time of each instance is
-    /// its `start`. Restart at 0 with new starts every few minutes, because `f32` seconds lose precision.
+    /// its `start`. Every few minutes, restart `elapsed` at 0 and give the instances new starts, because `f32` seconds lose
+    /// precision.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) if a time is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS);
@@ -106,7 +107,8 @@ impl GatedFrame {
         self.gate.set_budget(gpu, bones)
     }
 
-    /// Records the frame in a compute pass of its own. When it has run, the crowd's model matrices are valid for the set time.
+    /// Records the frame in a compute pass of its own. After the pass has run, the crowd's model matrices are valid for the set
+    /// time.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.dispatch(&mut compute_pass(encoder, "animation"));
     }

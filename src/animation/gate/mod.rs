@@ -21,11 +21,11 @@ use crate::asset::keyframe::RotationPath;
 pub enum Gate {
     /// Samples every bone that the instance's clip moves.
     Off(AnimatedBones),
-    /// Skips updates by the rule of thesis A (section 12.10): a bone *skips* one update per period of `priority · Ω · period`
-    /// ticks.
+    /// Skips updates by the rule of thesis A (section 12.10): a bone *skips* one update in each period. The current period is
+    /// `priority · Ω · period` ticks long.
     ///
     /// **Decided**: the period is the time between two *skipped* updates, as in the example of thesis A. The thesis also calls it
-    /// the time step of updates, but then important bones would be updated least often.
+    /// the time step of updates. With that meaning, important bones would be updated least often.
     ///
     /// **Decided**: at Ω = 1 no update is skipped, as thesis A says of near objects. The rule alone would still skip one update
     /// per `priority · period` ticks.
@@ -60,7 +60,7 @@ pub enum Gate {
     Budget {
         /// Expected visible motion of each bone.
         table: ExpectationTable,
-        /// Largest number of bones per frame. Instances that must be sampled in full are sampled even if they exceed it.
+        /// Largest number of bones per frame. Instances that must be sampled in full are sampled even beyond this limit.
         bones: u32,
     },
 }
@@ -112,7 +112,8 @@ pub struct Frame {
     pub frame_ticks: u32,
     /// Number of frames since the start.
     pub frame: u32,
-    /// How far ahead of the frame's time [`Gate::Bounded`] may sample a bone, in seconds; 0 disables sampling ahead. A bone whose
-    /// error is split evenly before and after the sampled time stays valid twice as long. Use about the length of a frame.
+    /// How far ahead of the frame's time [`Gate::Bounded`] may sample a bone, in seconds; 0 disables sampling ahead. A bone that
+    /// is sampled ahead stays within its allowed error both before and after the sampled time, and so for twice as long. Use
+    /// about the length of a frame.
     pub ahead: f32,
 }

@@ -31,7 +31,7 @@ impl GatePass {
     /// Uploads a gate's table and compiles its pipelines.
     ///
     /// # Errors
-    /// [`GpuError`] if the device has no memory for the table, or fails.
+    /// [`GpuError`] for errors of the device, including too little memory for the table.
     pub fn new(gpu: &Gpu, gate: &Gate) -> Result<Self, GpuError> {
         let (mut period, mut first_above) = (0, 0);
         let (mode, table) = match gate {
@@ -58,7 +58,7 @@ impl GatePass {
     /// Prepares a job that chooses the bones of a crowd to sample. The crowd's clip clocks are its input.
     ///
     /// # Errors
-    /// [`InputError`] in these cases; [`GpuError`] for errors of the device:
+    /// [`GpuError`] for errors of the device; [`InputError`] in these cases:
     ///
     /// - the crowd's bones, clips or rotation path differ from the gate's table;
     /// - `active` belongs to another crowd;
@@ -108,14 +108,15 @@ impl GatePass {
             remaining: remaining.slice(),
             bits: active.bits.slice(),
         };
-        // One thread per word of bits. The words of a bounded gate depend on each other, so it uses one thread per instance.
+        // One thread per word of bits. Under a bounded gate, the words of an instance depend on one another, so one thread
+        // decides all of them.
         let threads = params.instances * if is_bounded { 1 } else { params.words };
         let job = Job::spread(gpu, "animation/gate", kernel, group.bind(gpu, kernel)?, threads)?;
         Ok(GateJob { work: Work::Gate { params, uniform, job } })
     }
 }
 
-/// A prepared gate. In each frame, set the frame, then record.
+/// A prepared gate. In each frame, set the clock values, then record.
 #[derive(Debug, Clone)]
 pub struct GateJob {
     work: Work,

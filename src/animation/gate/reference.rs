@@ -82,8 +82,8 @@ fn words<'a>(
     })
 }
 
-/// Decides on each word separately. `thin` selects bones from a word's candidates; at full detail all candidates are selected
-/// without it.
+/// Decides on each word separately. `thin` selects bones from a word's candidates. At full detail, `thin` is not called and all
+/// candidates are selected.
 fn thinned(
     bones: &AnimatedBones,
     lods: &[Lod],
@@ -130,7 +130,7 @@ pub fn scramble(word: u32) -> u32 {
 }
 
 /// Returns whether the rule of thesis A skips this update: one update per period. If the period is no longer than a frame, every
-/// update is skipped. Otherwise the update is skipped in which the clock passes a multiple of the period.
+/// update is skipped. Otherwise, an update is skipped if the clock passes a multiple of the period in that frame.
 pub fn is_skipped(period: u32, ticks: u32, frame_ticks: u32) -> bool {
     period <= frame_ticks || ticks % period < frame_ticks
 }
@@ -168,12 +168,13 @@ struct Remaining<'a> {
     by_slot: &'a mut [u32],
 }
 
-/// Chooses the bones of a word to sample, parents first. Returns the mask of the sampled bones, and the mask of those that are
-/// sampled ahead.
+/// Chooses the bones of a word to sample, parents first. Returns two masks: the bones that are sampled, and the bones among them
+/// that are sampled ahead.
 ///
 /// A bone may use its fraction of the remaining budget. If its missed motion is within the fraction, the bone is not sampled, and
 /// the missed motion is subtracted from the budget. Otherwise the bone is sampled and subtracts nothing. A sampled bone is
-/// sampled ahead if its motion until the look-ahead time is also within the fraction; this motion is then subtracted.
+/// sampled ahead if its motion until the look-ahead time is within the fraction. In this case, that motion is subtracted from the
+/// budget.
 fn by_motion(
     table: &BoundTable,
     word: &Word<'_>,

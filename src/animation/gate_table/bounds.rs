@@ -14,15 +14,15 @@ use crate::shared::animation::gate;
 use crate::shared::animation::gate_state::FRACTION_ONE;
 use crate::shared::animation::order::NO_PARENT;
 
-/// Exponent applied to each bone's rate of motion when the error budget is divided into fractions. At 1, the fewest samples are
-/// needed if only the fractions decide. At 0, all animated bones get equal fractions.
+/// Exponent applied to each bone's rate of motion when the error budget is divided into fractions. The exponent 1 needs the
+/// fewest samples if only the fractions decide. The exponent 0 gives all animated bones equal fractions.
 const EVENNESS: f64 = 0.5;
 
 /// Factor by which a bone may exceed its fraction of the budget. The error bound holds for any factor, because the bones below
 /// get only the budget that remains. A factor above 1 helps because bones seldom miss their whole fraction at the same time.
 ///
-/// The factors 1, 1.6, 2.5 and 4 were compared on a walk and a run. 1.6 needs the fewest samples where `uniform` samples every
-/// 2nd to 4th frame, and 1 where it samples every 8th.
+/// The factors 1, 1.6, 2.5 and 4 were compared on a walk and a run. Where `uniform` samples every 2nd to 4th frame, the factor
+/// 1.6 needs the fewest samples. Where `uniform` samples every 8th frame, the factor 1 does.
 const FAVOUR: f64 = 1.6;
 
 /// Table of [`Gate::Bounded`](crate::animation::Gate::Bounded): upper bounds on the motion that each bone adds to any point, and
@@ -191,7 +191,8 @@ impl BoneErrorBudget {
     }
 }
 
-/// Sets each bone's fraction of the error budget that its ancestors leave, from its rate of motion.
+/// Sets each bone's fraction of the error budget that the bone's ancestors leave. The fractions follow from the bones' rates of
+/// motion.
 fn distribute_budget(skeleton: &Skeleton, columns: &mut [Column]) {
     let rates: Vec<f64> = columns.iter().map(|column| column.path.total().powf(EVENNESS)).collect();
     for (column, fraction) in columns.iter_mut().zip(budget_fractions(skeleton, &rates)) {

@@ -5,7 +5,7 @@ use crate::animation::motion::{BoneMotion, Path};
 
 /// Motion of one bone along a clip: a column of a gate table.
 pub(super) struct Column {
-    /// Path length of the points that follow the bone, in the table's dimension.
+    /// Path length of the points that follow the bone, in the unit in which the table's motion is measured.
     pub(super) path: Path,
     /// Fraction of the error budget left by the bone's ancestors, 0 to 1.
     pub(super) fraction: f64,
@@ -30,8 +30,8 @@ impl Column {
     ///
     /// Rounding: sums at row starts are rounded to nearest, rises are rounded up, and interpolated sums are rounded down. The
     /// difference of two sums is thus at most 4 units too small. Fractions are truncated to 16 bits (2⁻¹⁶ of a segment), and
-    /// their division may add a rounding error. For two sums, 2⁻¹² of the steepest segment exceeds both errors. The quantization
-    /// slack is a power of two that covers all of these errors.
+    /// their division may add a rounding error. For two sums, both errors together are below 2⁻¹² of the steepest segment. The
+    /// quantization slack is a power of two that covers all of these errors.
     pub(super) fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
         let mut sum = 0.0;
         let mut steepest = 0.0_f64;

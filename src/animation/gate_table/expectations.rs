@@ -10,8 +10,8 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// Table of [`Gate::Budget`](crate::animation::Gate::Budget): the expected motion that each bone adds to points that follow the
-/// bone or its descendants, as a root sum of squares. The gate ranks bones by it.
+/// Table of [`Gate::Budget`](crate::animation::Gate::Budget): the motion that each bone is expected to add to points that follow
+/// the bone or its descendants. This motion is a root sum of squares. The gate ranks bones by it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectationTable(MotionTable);
 

@@ -25,7 +25,7 @@ pub(crate) use buffers::TableBuffers;
 pub use expectations::ExpectationTable;
 pub use priorities::PriorityTable;
 
-/// Accumulated motion of a whole clip cannot exceed this value, in units of the table.
+/// Largest accumulated motion of a whole clip, in units of the table.
 const MAX_MOTION: f64 = EVERYTHING as f64;
 
 /// Largest number of entries of a table.

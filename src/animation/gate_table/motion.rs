@@ -39,7 +39,7 @@ impl MotionTable {
         Ok((Self { animated_bones, path, rows, unit: 1.0 }, order))
     }
 
-    /// Writes the columns of every clip. It chooses the smallest unit in which every clip's motion fits.
+    /// Writes the columns of every clip, in the smallest unit in which every clip's motion fits.
     pub fn fill(&mut self, order: &Order, set: &ClipSet, columns: &[Vec<Column>]) -> Result<(), InputError> {
         for (clip, columns) in columns.iter().enumerate() {
             if let Some(bone) = columns.iter().position(|column| !column.path.total().is_finite()) {

@@ -1,8 +1,8 @@
 //! Keyframe cursors: the position of each instance between two keys of its clip. Computing them is the first step of sampling. A
 //! cursor is found once per timeline (list of key times), so all tracks with the same key times share it.
 //!
-//! The search first guesses the key as if keys were evenly spaced. If the guess is wrong, bisection finds the key. Two devices
-//! therefore find the same key whenever they compute the same time.
+//! The search first guesses the key as if keys were evenly spaced. If the guess is wrong, bisection finds the key. The result
+//! does not depend on the guess, so two devices find the same key whenever they compute the same time.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -11,9 +11,9 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::{KeyframeCursorJob, KeyframeCursorPass};
 
-/// Largest allowed difference of key + fraction from the CPU reference, on any device. It holds for times up to 64 s and keys at
-/// least 1/64 s apart.
+/// Largest allowed difference between a cursor's `key + fraction` and the CPU reference, on any device. It holds for times up to
+/// 64 s and keys at least 1/64 s apart.
 ///
-/// Devices may fuse the operations of `start + rate·elapsed` and of the wrapped time `t − ⌊t/d⌋·d`. Together both are off by at
-/// most 3ε of 64 s, or 7.4e-4 of a segment of 1/64 s, with ε = 2⁻²⁴. The division for the fraction adds 2.5ε.
+/// Devices may fuse the operations of `start + rate·elapsed` and of the wrapped time `t − ⌊t/d⌋·d`. Together, both are off by at
+/// most 3ε of 64 s, with ε = 2⁻²⁴. This is 7.4e-4 of a segment of 1/64 s. The division for the fraction adds 2.5ε.
 pub const KEYFRAME_CURSOR_BOUND: f32 = 1e-3;

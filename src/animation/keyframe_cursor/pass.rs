@@ -111,8 +111,8 @@ fn bind(
 pub type KeyframeCursorJob = ParamsJob<KeyframeCursorParams>;
 
 impl KeyframeCursorJob {
-    /// Sets the time in seconds for the next submission. At `elapsed` 0, the clip time of each instance is its `start`. Restart
-    /// at 0 with new starts every few minutes, because `f32` seconds lose precision.
+    /// Sets the time in seconds for the next submission. At `elapsed` 0, the clip time of each instance is its `start`. Every few
+    /// minutes, restart `elapsed` at 0 and give the instances new starts, because `f32` seconds lose precision.
     ///
     /// # Errors
     /// [`crate::InputError`] if `elapsed` is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`]

@@ -7,7 +7,8 @@ use crate::asset::keyframe::{KeyframeCursor, keyframe_cursor};
 use crate::shared::animation::clock::MAX_TURNS;
 
 /// Maps a time in seconds to a time inside a clip of `duration` seconds. The result is 0 for a loop whose time is too large to
-/// resolve. The function computes in the order of `wgsl/animation/clock.wgsl`. [`Wrap::inside`] is more exact for large times.
+/// resolve. The function performs the operations of `wgsl/animation/clock.wgsl` in the order of that file. [`Wrap::inside`] is
+/// more exact for large times.
 pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     if duration <= 0.0 {
         return 0.0;
@@ -30,8 +31,8 @@ pub fn inside_clip(wrap: Wrap, duration: f32, time: f32) -> f32 {
     inside
 }
 
-/// Cursor of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] per instance. Cursors beyond the clip's
-/// own timelines are set to the start; the kernel leaves them unchanged instead.
+/// Cursor of each instance on each timeline of its clip, [`ClipSet::timelines_a_clip`] per instance. A clip with fewer timelines
+/// leaves its last cursors unused. This function sets unused cursors to the start; the kernel leaves them unchanged.
 pub fn cursors(set: &ClipSet, instances: &[Instance], elapsed: f32) -> Vec<KeyframeCursor> {
     let mut cursors = vec![KeyframeCursor::default(); instances.len() * set.timelines_a_clip()];
     cursors_into(set, instances, elapsed, &mut cursors);

@@ -6,8 +6,8 @@
 //! parent's matrix from memory once per chain, not once per bone. One dispatch processes all chains whose parents are done. Far
 //! fewer dispatches are needed than the skeleton has levels of bones.
 //!
-//! All descendants of an active bone are a contiguous range of slots too. The first bone of the range therefore tells a thread
-//! which bones to compute.
+//! The descendants of an active bone occupy a contiguous range of slots, and all of them must be computed. They include the rest
+//! of the bone's chain. A thread therefore only searches its chain for the first bone to compute.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -19,6 +19,7 @@ pub use pass::LocalToModelPass;
 /// Largest allowed difference between a matrix component and the CPU reference, on any device. It is relative to the number of
 /// bones of the longest chain times the largest component (at least 1).
 ///
-/// A local matrix has an error of 10ε of its scale (ε = 2⁻²⁴, 2ε per operation). A row of the product has an error of 8ε of the
-/// sum of its terms. This sum is at most √3 times the largest component. Together this is 32ε per bone, rounded up.
+/// Let ε = 2⁻²⁴: an operation has an error of 2ε. A local matrix has an error of 10ε of its scale. A row of the product has an
+/// error of 8ε of the sum of its terms. This sum is at most √3 times the largest component. Together, these errors are at most
+/// 32ε per bone, or 1.91e-6. The bound is rounded up.
 pub const LOCAL_TO_MODEL_BOUND: f32 = 2e-6;

@@ -34,7 +34,7 @@ impl LocalToModelPass {
     /// [`InputError`] for a crowd of another skeleton; [`GpuError`] for errors of the device.
     pub fn prepare(&self, gpu: &Gpu, skeleton: &Skeleton, crowd: &Crowd) -> Result<Job, Error> {
         let binder = Binder::new(gpu, skeleton, crowd)?;
-        // Placeholders: the kernel without lists processes every slot and does not read them.
+        // Placeholders for the lists: this kernel processes every slot and reads no list.
         let (words, dispatches) = (Buffer::new(gpu, "nothing", 0)?, Buffer::new(gpu, "nothing", 1)?);
         let lists =
             Lists { updated_bones: &words, first_word: 0, instances: &words, dispatches: &dispatches };

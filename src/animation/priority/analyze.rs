@@ -232,8 +232,8 @@ mod tests {
         Some(Keys { times, values, interpolation: Interpolation::Linear })
     }
 
-    /// Compares with values computed by hand. The middle bone moves 4 m in a second, so the frozen bone and its child are 1, 2, 3
-    /// and 4 m off.
+    /// Compares with values computed by hand. The middle bone moves 4 m in a second, so at the four moments the frozen bone and
+    /// its child are 1, 2, 3 and 4 m off.
     #[test]
     fn the_error_of_freezing_is_the_one_computed_by_hand() {
         let (skeleton, clip) = chain([keys(&[0.0, 1.0], &[[0.0; 4], [4.0, 0.0, 0.0, 0.0]]), None, None]);
@@ -243,7 +243,7 @@ mod tests {
         assert!((errors[0] - expected).abs() < 1e-6 && errors[1] == 0.0, "{errors:?} {expected}");
     }
 
-    /// If only the translation changes, in proportion to the error, then only its weight remains.
+    /// If only the translation changes, and in proportion to the error, only the weight of the translation remains.
     #[test]
     fn the_part_that_moves_gets_the_weight() {
         let distances = [0.0, 1.0, 1.5, 4.0, 0.0].map(|x| [x, 0.0, 0.0, 0.0]);
@@ -272,7 +272,7 @@ mod tests {
             let differences = Differences::new(&model.skeleton, clip, Wrap::Loop).expect("fits");
             let terms = differences.terms(&model.skeleton);
             let errors = freezing_errors(&model.skeleton, clip, &differences);
-            // Squared misfit of the weighted terms to the errors, after scaling them by the best factor.
+            // Squared difference between the errors and the weighted terms, after scaling the terms by the best factor.
             let misfit = |weights: &[f64]| {
                 let sums: Vec<f64> =
                     terms.iter().map(|row| row.iter().zip(weights).map(|(a, b)| a * b).sum()).collect();

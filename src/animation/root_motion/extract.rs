@@ -100,8 +100,8 @@ fn moves(clip: &Clip, track: &Track) -> bool {
     track.keys > 1 && (bends || differ)
 }
 
-/// Returns the keys of the translation that is taken, in model space since the start, and the keys of the remaining translation.
-/// Both are linear in the original values, so they keep the interpolation of the track.
+/// Returns the keys of two translations: the taken translation since the clip's start, in model space, and the remaining
+/// translation. Both are linear in the original values, so they keep the interpolation of the track.
 fn split_path(clip: &Clip, bone: usize, origin: DVec3, above: &DMat3, taken: Taken) -> (Keys, Option<Keys>) {
     let part = |is_taken: bool| f64::from(u8::from(is_taken));
     let (horizontal, vertical) = (part(taken.horizontal), part(taken.vertical));

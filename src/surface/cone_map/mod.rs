@@ -3,7 +3,8 @@
 //! on that corner in which a ray crosses the surface at most once.
 //!
 //! These are the relaxed cones of Policarpo and Oliveira (2007), made safe under bilinear filtering in the spirit of Bán and
-//! Valasek (2024). Their bounds hold for every point of both cells that are compared, not only for texel centers.
+//! Valasek (2024). A radius follows from comparing a cell with other cells. It is safe for every point of both compared cells,
+//! not only for texel centers.
 //!
 //! The radius is at most the shorter edge of the map, in cells. On maps with few rows, the method `quadtree` is far cheaper.
 

@@ -67,7 +67,7 @@ impl PyramidLayout {
         ((first[1] + node[1]) * self.pitch + first[0] + node[0]) as usize
     }
 
-    /// Column and row in the plane of a level's first node.
+    /// Column and row of a level's first node in the plane.
     fn first(&self, level: u32) -> [u32; 2] {
         match level.checked_sub(1) {
             None => [0, 0],

@@ -2,7 +2,7 @@
 //! section 3.1).
 //!
 //! Material shaders import the methods from `wgsl/surface/`. The command `relievo shaders` writes the methods as flat WGSL. The
-//! kernel in this folder runs the methods on lists of rays.
+//! kernel `kernels/surface/relief.wgsl` runs the methods on lists of rays.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -20,7 +20,8 @@ pub use crate::shared::surface::ray::{SurfaceHit as ReliefHit, SurfaceRay as Rel
 use crate::shared::surface::{linear, ray, trace};
 use crate::surface::map::Address;
 
-/// Smallest cosine between a traced ray and the normal: 89.55° from the normal. Flatter rays are traced with this cosine.
+/// Smallest cosine of the angle between a traced ray and the normal, for an angle of 89.55°. Flatter rays are traced with this
+/// cosine.
 pub const LEAST_COSINE: f32 = ray::SURFACE_LEAST_COSINE;
 
 /// Largest number of linear search steps per ray.
@@ -127,7 +128,8 @@ pub struct March {
     /// Address mode of the height map. An acceleration map can be used only with the address mode it was computed for.
     pub address: Address,
     /// Numbers of linear steps for rays straight down (min) and for rays at the horizon (max), each 1 to [`MAX_STEPS`]. The
-    /// second must not be smaller. For other rays the number is ⌈mix(min, max, 1 − V.z)⌉, where V.z is the ray's cosine.
+    /// second number must not be smaller than the first. For other rays, the number is ⌈mix(min, max, 1 − V.z)⌉, where V.z is the
+    /// ray's cosine.
     ///
     /// **Decided**: the number of steps grows with the angle from the normal, as in the text of thesis B (3.1.2). Its table 4.4
     /// takes 10 steps at every angle.

@@ -1,4 +1,4 @@
-//! Textures of height maps and their acceleration maps, which shaders trace rays through.
+//! Textures that shaders trace rays through: height maps and their acceleration maps.
 
 use crate::gpu::{Gpu, GpuError};
 use crate::surface::HeightMapBatch;

@@ -6,18 +6,18 @@
 //! along ∂P/∂v, which is down the image if v starts at the top. (In glTF, the bitangent points up the image, so glTF's `w` has
 //! the opposite sign.)
 //!
-//! **Decided**: thesis B sums the solved tangents without normalizing them. The triangle with the smallest extent in the texture
-//! then dominates, above all a sliver. Here each triangle is weighted by the chord of its angle at the vertex, 2·sin(θ/2). This
-//! weight is close to the angle weight of Thürmer and Wüthrich (1998), which does not depend on how a surface is triangulated.
-//! The chord needs no arc cosine.
+//! **Decided**: thesis B sums the solved tangents without normalizing them. Without normalization, the triangle with the smallest
+//! extent in the texture dominates, especially if it is a sliver. Here each triangle is weighted by the chord of its angle at the
+//! vertex, 2·sin(θ/2). This weight is close to the angle weight of Thürmer and Wüthrich (1998), which does not depend on how a
+//! surface is triangulated. The chord needs no arc cosine.
 //!
 //! Vertices without a defined tangent get a frame too, never NaN:
 //!
 //! - A triangle contributes nothing if f32 cannot resolve its tangent. This is the case if its extent in u, v or space is below
 //!   2⁻¹⁰⁰. It is also the case if its area, tangent or uv area is below the fraction [`DEGENERATE`] of the largest value that
 //!   its extents allow.
-//! - The tangent is the first vector of the basis that Duff et al. (2017) construct from the normal alone, and `w` is 1, in three
-//!   cases: if no triangle contributes, if the sum cancels out ([`VANISHING`]), and if the sum lies along the normal.
+//! - In three cases, the tangent comes from the normal alone: no triangle contributes, the sum cancels out ([`VANISHING`]), or
+//!   the sum lies along the normal. The tangent is then the first vector of the basis of Duff et al. (2017), and `w` is 1.
 //! - A normal that is zero or not finite (largest component outside 2⁻¹⁰⁰ to 2¹⁰⁰) counts as +Z. The tangent is then (1, 0, 0),
 //!   and `w` is 1. Other normals need not have unit length.
 //!

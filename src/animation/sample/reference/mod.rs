@@ -126,7 +126,7 @@ fn slerp_weight(t: f32, less_one: f32) -> f32 {
     t * terms.fold(1.0, |sum, (u, v)| 1.0 + (u * (t * t) - v) * less_one * sum)
 }
 
-/// Local transform of every bone of every instance, at the instances' cursors. The result follows the computation of the kernel.
+/// Local transform of every bone of every instance, at the instances' cursors. The function follows the kernel's computation.
 ///
 /// # Panics
 /// If there are fewer than [`ClipSet::timelines_a_clip`] cursors per instance.
@@ -177,7 +177,7 @@ pub fn sample_pair(
 }
 
 /// Local transform of every bone of every instance, blended over its layers. `cursors` are the cursors of [`all_instances`]. The
-/// result follows the computation of the kernel for a layered crowd.
+/// function follows the kernel's computation for a layered crowd.
 ///
 /// # Panics
 /// If there are fewer cursors than the set needs, or if a layer does not match the base.

@@ -17,8 +17,8 @@ pub(crate) struct Grid {
     address: Address,
 }
 
-/// A square of cells. `index` is its index at its pyramid level. `low` and `high` are its edges, in cells from the grid's base;
-/// `high` is exclusive.
+/// A square of cells: a node of the pyramid. `index` is the node's column and row in its level. `low` and `high` are its edges,
+/// in cells from the grid's base; `high` is exclusive.
 pub(crate) struct Node {
     pub index: [i32; 2],
     low: [i32; 2],
@@ -129,7 +129,7 @@ impl Grid {
 }
 
 impl Node {
-    /// Corner of a leaf that its bilinear patch is relative to.
+    /// Corner of a leaf that serves as the origin of its bilinear patch.
     pub(crate) fn corner(&self) -> [i32; 2] {
         [0, 1].map(|axis| if self.low[axis] == -FAR { self.high[axis] - 1 } else { self.low[axis] })
     }
