@@ -9,7 +9,7 @@
 //! - `times`: `f32` seconds, ascending within a track. Tracks with equal key times share one list.
 //! - `values`: `vec4<f32>`s. A value is a translation or a scale followed by 0, or a quaternion x, y, z, w. Cubic splines have
 //!   three values per key: in-tangent, value, out-tangent. A tangent is stored multiplied by the duration of its segment in
-//!   seconds; the segment is the interval between two keys that the tangent shapes.
+//!   seconds. The segment of an in-tangent ends at the key; the segment of an out-tangent starts at the key.
 //!
 //! A key thus takes 16 bytes (48 in a cubic spline). Its time takes 4 more bytes, unless another track shares the time. A bone
 //! without keys has three tracks with 0 keys and one value each: the bone's rest pose.
@@ -19,10 +19,10 @@
 //! - Successive keys with equal times make the value jump: from that time on, the last of these keys applies. Descending times
 //!   are refused.
 //! - Quaternions are stored with length 1. A quaternion shorter than [`SHORTEST`](super::transform::SHORTEST) is refused.
-//! - Keys of linear rotations are stored with the sign that is closer to the previous key. Sampling then takes the shortest
-//!   path between neighbouring keys without a test. Cubic splines keep all signs, because a value and its tangents must keep
-//!   matching signs.
-//! - Times below 2⁻¹⁰⁰ s count as 0, because devices may flush smaller differences to zero.
+//! - A key of a linear rotation is stored with the sign that brings it closer to the previous key. Sampling then takes the
+//!   shortest path between neighbouring keys and need not test signs. Cubic splines keep all signs, because the signs of a
+//!   value and its tangents must match.
+//! - Times below 2⁻¹⁰⁰ s count as 0, because devices may flush the tiny differences between such times to zero.
 
 mod keys;
 mod layout;
@@ -95,7 +95,7 @@ impl Clip {
     ///
     /// # Errors
     /// [`InputError`] for a duration outside 0..=[`LONGEST`] seconds, and for a list that does not have one entry per bone. For
-    /// wrong keys, the error names the bone's field, with its index. Keys are wrong if a track has none, if times descend or
+    /// wrong keys, the error names the field and the bone's index. Keys are wrong if a track has none, if times descend or
     /// leave 0..=[`LONGEST`], if the number of values does not match the times, if a value is not finite, or if a rotation has
     /// no direction.
     pub fn new(
@@ -144,7 +144,7 @@ impl Clip {
         &self.name
     }
 
-    /// Duration in seconds; 0 if all keys lie at time 0.
+    /// Duration in seconds, at least the time of the last key.
     pub fn duration(&self) -> f32 {
         self.duration
     }

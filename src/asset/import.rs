@@ -19,8 +19,8 @@ impl Model {
         Self::read(path, |bytes, beside| Self::from_bytes_beside(path, bytes, beside))
     }
 
-    /// Reads a file like [`Model::from_file`], but leaves out materials and images. Use it when nothing is drawn: missing
-    /// textures, and extensions for materials and images, then cause no error. No vertex is duplicated for its tangents.
+    /// Reads a file like [`Model::from_file`], but leaves out materials and images. Use it when nothing is drawn. Missing
+    /// textures, and extensions for materials and images, cause no error. No vertex is duplicated for its tangents.
     ///
     /// # Errors
     /// The errors of [`Model::from_file`], except those about materials and images.

@@ -1,8 +1,8 @@
 //! Influences: the bones that each vertex follows, up to eight, the strongest first. Distant instances can use fewer
 //! (thesis A, section 8.4):
 //!
-//! - `truncate(k)` keeps the k strongest influences and divides their weights by the sum of these. Vertices jump where k
-//!   changes.
+//! - `truncate(k)` keeps the k strongest influences and divides their weights by the sum of the kept weights. Vertices jump
+//!   when k changes.
 //! - `fade(λ)` subtracts λ times the second strongest weight from every weight except the strongest. The strongest weight grows
 //!   so that the sum stays 1. The result is continuous in λ: λ = 0 is full quality, bit for bit; λ = 1 is rigid. The weakest
 //!   influences vanish first, and shaders do not fetch vanished influences.
@@ -61,8 +61,8 @@ impl Influences {
     ///
     /// # Errors
     /// [`InputError`] for weights that are negative or not finite, for a vertex without bones or with more than
-    /// [`MAX_INFLUENCES`], and for a bone with a weight whose index is not below `bones`. In the path of the error, `path`
-    /// precedes the vertex's index.
+    /// [`MAX_INFLUENCES`], and for a bone index that is not below `bones`, unless the bone's weight is 0. In the path of the
+    /// error, `path` precedes the vertex's index.
     pub fn new(
         path: &str,
         bones: usize,
@@ -132,8 +132,8 @@ impl Influences {
         self.offsets.push(self.all.len() as u32);
     }
 
-    /// Appends the influences of another mesh's vertices, with the same order and weights. `bone` maps the other mesh's bone
-    /// indices.
+    /// Appends the influences of another mesh's vertices, with the same order and weights. `bone` converts the other mesh's
+    /// bone indices to this mesh's.
     pub(crate) fn append(&mut self, other: &Self, mut bone: impl FnMut(u32) -> u32) {
         let first = self.all.len() as u32;
         self.offsets.extend(other.offsets[1..].iter().map(|offset| first + offset));

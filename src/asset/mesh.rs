@@ -27,8 +27,9 @@ pub struct MeshLevel {
     /// Three vertex indices per triangle, into the mesh's vertices; at least one triangle.
     pub indices: Vec<u32>,
     /// Geometric error in the model's units, at least 0: the largest distance between the surfaces of level and mesh over the
-    /// examined poses. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it at samples. No vertex of the mesh is
-    /// further from the level, and no sample of the level is further from the mesh. Points between samples may be further.
+    /// examined poses. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it at samples: no vertex of the mesh is
+    /// further than `error` from the level, and no sample of the level is further than `error` from the mesh. Points between
+    /// samples may be further.
     pub error: f32,
 }
 
@@ -67,11 +68,11 @@ pub struct Mesh {
     /// level uses a subset of the previous level's vertices, and errors do not decrease from one level to the next.
     pub levels: Vec<MeshLevel>,
     /// Partner of each vertex: the vertex that replaces it in the first level whose triangles no longer use it. The partner is
-    /// a vertex of that level, or a vertex at the same position that has no triangles there. A vertex of the coarsest level,
-    /// and a vertex without triangles, is its own partner.
+    /// a vertex of that level, or a vertex at the same position that no triangle of that level uses. A vertex of the coarsest
+    /// level, and a vertex without triangles, is its own partner.
     ///
-    /// Replacing the corners of a level's triangles by their partners gives the triangles of the next coarser level. Their
-    /// order stays, and degenerate triangles lie among them. The list is empty if partners are not known.
+    /// Replacing the corners of a level's triangles by their partners gives the triangles of the next coarser level. The
+    /// triangles keep their order, and some become degenerate. The list is empty if partners are not known.
     pub partners: Vec<u32>,
 }
 
@@ -234,7 +235,7 @@ mod tests {
         assert_eq!(mesh.validate(&skins), Ok(()));
         let radii = |mesh: &Mesh| bone_radii(5, &skins, std::slice::from_ref(mesh));
         let near = |found: f32, wanted: f32| (wanted..wanted * 1.000_002).contains(&found);
-        // Of the weight −3, the absolute value counts.
+        // The weight −3 counts with its absolute value.
         let found = radii(&mesh);
         assert!(near(found[3], 2.0 + 3.0) && near(found[1], 26.0_f32.sqrt() + 1.5), "{found:?}");
         assert_eq!([found[0], found[2], found[4]], [0.0; 3]);

@@ -100,7 +100,7 @@ impl Model {
     /// precedence.
     ///
     /// # Errors
-    /// [`InputError`] if there is no such clip. It lists up to 20 clips.
+    /// [`InputError`] if there is no such clip. The error lists up to 20 clips.
     pub fn clip(&self, name_or_index: &str) -> Result<&Clip, InputError> {
         let by_name = self.clips.iter().find(|clip| clip.name() == name_or_index);
         let by_index = || name_or_index.parse().ok().and_then(|index: usize| self.clips.get(index));

@@ -82,7 +82,7 @@ impl TryFrom<StoredKeys> for WeightKeys {
 impl WeightKeys {
     /// Builds the keys of `targets` weights. Each key has one value per target. In a cubic spline, a key has first all
     /// in-tangents, then all values, then all out-tangents; tangents are per second. `at_times` and `at_values` are the paths
-    /// of these fields in errors.
+    /// of `times` and `values` in errors.
     ///
     /// # Errors
     /// [`InputError`] for no keys or no targets; for times that descend, are negative, too large or not finite; for a wrong

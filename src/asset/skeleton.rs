@@ -179,7 +179,7 @@ impl Skeleton {
         lengths
     }
 
-    /// For each joint in [`Skeleton::joints`], its nearest ancestor that is a joint too, as an index into that list.
+    /// For each joint in [`Skeleton::joints`], the nearest ancestor that is also a joint, as an index into the same list.
     pub fn joint_parents(&self) -> Vec<Option<u32>> {
         let mut place = vec![None; self.bones.len()];
         for (joint, at) in self.joints.iter().zip(0..) {

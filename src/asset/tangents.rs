@@ -49,13 +49,13 @@ impl TangentMesh<'_> {
     }
 }
 
-/// Refuses components that are not finite or larger than [`COORDINATE_LIMIT`]. `path` names the list of vectors.
+/// Refuses components that are not finite or exceed [`COORDINATE_LIMIT`] in absolute value. `path` names the list of vectors.
 pub(crate) fn in_range(path: &str, vectors: &[impl AsRef<[f32]>]) -> Result<(), InputError> {
     (vectors.iter().enumerate())
         .try_for_each(|(at, vector)| numbers_in_range(|| format!("{path}[{at}]"), vector.as_ref()))
 }
 
-/// Refuses numbers of one list that are not finite or larger than [`COORDINATE_LIMIT`]. `path` names the list.
+/// Refuses numbers of one list that are not finite or exceed [`COORDINATE_LIMIT`] in absolute value. `path` names the list.
 pub(super) fn numbers_in_range(path: impl Fn() -> String, numbers: &[f32]) -> Result<(), InputError> {
     // NaN is refused, too, because comparisons with it are false.
     let is_within = |value: &f32| value.abs() <= COORDINATE_LIMIT;
@@ -115,8 +115,8 @@ const EPSILON: f64 = f32::EPSILON as f64;
 pub struct TangentFrame {
     /// Unit tangent x, y, z, orthogonal to the normal, and the handedness ±1 of the frame.
     pub tangent: [f32; 4],
-    /// Factor of [`TANGENT_BOUND`] at this vertex, 1 or more. Infinite if rounding decides whether a triangle or the sum is
-    /// degenerate.
+    /// Factor of [`TANGENT_BOUND`] at this vertex, 1 or more. Infinite if rounding decides whether a triangle, or the sum over
+    /// the vertex's triangles, is degenerate.
     pub sensitivity: f64,
 }
 
@@ -128,7 +128,8 @@ pub fn tangents(mesh: &TangentMesh<'_>) -> Result<Vec<[f32; 4]>, InputError> {
     Ok(frames(mesh)?.into_iter().map(|frame| frame.tangent).collect())
 }
 
-/// Computes the tangent frame of every vertex, with its sensitivity to rounding. [`tangents`] returns the same tangents alone.
+/// Computes the tangent frame of every vertex, with its sensitivity to rounding. [`tangents`] returns the same tangents without
+/// the sensitivity.
 ///
 /// # Errors
 /// The errors of [`TangentMesh::validate`].
@@ -238,7 +239,7 @@ fn frame(mesh: &TangentMesh<'_>, adjacency: &Adjacency, vertex: usize) -> Tangen
     }
     let flat = sum.tangent - normal * normal.dot(sum.tangent);
     let least = sum.weight * f64::from(VANISHING);
-    // n additions make n roundings; a factor of 1 covers 32 of these.
+    // n additions cause n roundings. Every 32 roundings add the sum of sensitivities once more.
     let sensitivity = sum.sensitivity * (1.0 + corners.len() as f64 / 32.0);
     let error = f64::from(TANGENT_BOUND) * sensitivity;
     let vanishing = if sum.weight > 0.0 { undecided(flat.length(), least, error.x) } else { 0.0 };

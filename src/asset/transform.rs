@@ -52,7 +52,7 @@ impl Default for Transform {
     }
 }
 
-/// Refuses values that are not finite. The error names the first of these with its index.
+/// Refuses values that are not finite. The error names the first such value by its index.
 pub(crate) fn finite(path: &str, values: &[f32]) -> Result<(), InputError> {
     InputError::check_each(path, values, |value| value.is_finite(), "must be finite")
 }

@@ -33,8 +33,8 @@ impl<'a, T> Slice<'a, T> {
         self.raw.as_entire_binding()
     }
 
-    /// Returns the same bytes as elements of type `U`, as a shader declares them. The size of one type must be a multiple of
-    /// the other's.
+    /// Returns the same bytes as elements of type `U`, the type that a shader declares. The size of one type must be a multiple
+    /// of the other's.
     pub fn cast<U>(self) -> Slice<'a, U>
     where
         T: SeenAs<U>,

@@ -1,7 +1,7 @@
 //! Device errors. Error scopes catch the errors of a call; handlers receive all other errors later.
 //!
 //! Natively, a scope's error is known once the scope is popped. A browser reports the error only after the calling task has
-//! returned. There, a call that allocates or compiles succeeds, and the next call returns its error.
+//! returned. In a browser, a call that allocates or compiles always succeeds, and the next call returns the error.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 #[cfg(any(test, target_arch = "wasm32"))]
@@ -49,7 +49,7 @@ impl Errors {
         self.lock().lost.get_or_insert_with(|| reason.to_owned());
     }
 
-    /// Remembers an error, unless an earlier one has not been returned yet.
+    /// Remembers an error. If an earlier error has not been returned yet, that error is kept instead.
     fn hear(&self, error: GpuError) {
         self.lock().error.get_or_insert(error);
     }
@@ -85,7 +85,7 @@ impl Errors {
         waiting.into_iter().for_each(Waker::wake);
     }
 
-    /// Completes once the errors are known of all scopes that were popped before the call.
+    /// Completes once the errors of all scopes that were popped before the call are known.
     #[cfg(any(test, target_arch = "wasm32"))]
     async fn answered(&self) {
         let asked = self.lock().answers[0];
@@ -104,9 +104,9 @@ impl Errors {
 impl Gpu {
     /// Checks for errors that the device reported outside of the calls that caused them.
     ///
-    /// The loss of the device is always reported. In a browser, so are errors of calls that allocate or compile, which the
-    /// browser reports late ([`Gpu::check_async`]). If an embedding program opened the device ([`Gpu::from_wgpu`]), errors of
-    /// the program's own calls go only to the program's handlers.
+    /// The loss of the device is always reported. In a browser, errors of calls that allocate or compile are also reported
+    /// here, because the browser reports them late ([`Gpu::check_async`]). If an embedding program opened the device
+    /// ([`Gpu::from_wgpu`]), errors of the program's own calls go only to the program's handlers.
     ///
     /// # Errors
     /// The first of these errors. [`GpuError::DeviceLost`] is returned by every call once the device is lost. Any other error
@@ -172,7 +172,7 @@ impl Gpu {
     /// Pops nested error scopes. The browser reports their errors later.
     #[cfg(target_arch = "wasm32")]
     fn pop(&self, scopes: [wgpu::ErrorScopeGuard; 3]) -> Result<(), GpuError> {
-        // The scopes are popped immediately; the browser tells their errors later.
+        // The scopes are popped immediately; the browser reports their errors later.
         let answers: Vec<_> = scopes.into_iter().rev().map(wgpu::ErrorScopeGuard::pop).collect();
         let errors = self.errors.clone();
         errors.ask();

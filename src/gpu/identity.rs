@@ -1,8 +1,8 @@
 //! Tells whether two handles belong to the same device, and whether a device is lost.
 //!
 //! wgpu compares handles by identifiers that each [`wgpu::Instance`] counts separately, so devices of two instances may compare
-//! equal. wgpu panics if a resource of one instance is used in another. It has no query for the instance of a device or for its
-//! loss.
+//! equal. wgpu panics if a resource of one instance is used in another. It has no query for a device's instance, and none for a
+//! device's loss.
 //!
 //! Natively, a call that a working device refuses answers both questions. The error scope that catches the error belongs to the
 //! called device. If no scope catches an error, the device is lost.
@@ -12,7 +12,7 @@ pub(super) use browser::{Identity, caught};
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) use native::{Identity, caught, is_lost};
 
-/// Browser version. There, identifiers are unique, and misuse gives errors instead of panics.
+/// Browser version. In a browser, identifiers are unique, and misuse gives errors instead of panics.
 #[cfg(target_arch = "wasm32")]
 mod browser {
     #[derive(Debug, Clone, PartialEq)]

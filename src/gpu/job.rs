@@ -139,7 +139,7 @@ impl Job {
         self.run_split(gpu, INVOCATIONS_A_SUBMISSION).await
     }
 
-    /// Runs all steps in submissions of at most `most` threads each. A step with more threads is submitted alone.
+    /// Runs all steps in submissions of at most `most` threads each. A step with more threads gets a submission of its own.
     async fn run_split(&self, gpu: &Gpu, most: u64) -> Result<(), GpuError> {
         for steps in self.submissions(most) {
             let record = |encoder: &mut wgpu::CommandEncoder| {

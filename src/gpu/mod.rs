@@ -203,7 +203,7 @@ pub(crate) fn foreign(path: &str) -> InputError {
 /// split.
 fn limits(offered: &wgpu::Limits) -> wgpu::Limits {
     let default = wgpu::Limits::default();
-    // Shaders count words in u32, with a margin, so a binding has fewer than 2^32 bytes.
+    // Shaders count words in u32. As a margin, a binding is limited to fewer than 2^32 bytes.
     let most = u64::from(u32::MAX) / 4 * 4;
     let binding = offered.max_storage_buffer_binding_size.min(offered.max_buffer_size).min(most);
     wgpu::Limits {

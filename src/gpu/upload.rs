@@ -91,7 +91,7 @@ impl Staged {
 /// Smallest size of a staging buffer, in bytes.
 const LEAST: u64 = 1 << 12;
 
-/// A ring of staging buffers. Each recording uses one until the device has executed it.
+/// A ring of staging buffers. Each recording uses one of them until the device has executed the recording.
 #[derive(Debug)]
 pub struct StagingRing {
     slots: Vec<Slot>,

@@ -42,8 +42,8 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Checks key times and values. `is_rotation` says that the values are quaternions, otherwise they are translations or
-    /// scales. `times` and `values` are the paths of these fields in errors.
+    /// Checks key times and values. The values are quaternions if `is_rotation` is set, otherwise translations or scales.
+    /// `times` and `values` are the paths of these fields in errors.
     ///
     /// # Errors
     /// [`InputError`] for no keys; for times that descend, are negative, too large or not finite; for a number of values that
@@ -69,7 +69,7 @@ impl Keys {
     /// of their segment.
     ///
     /// # Errors
-    /// [`InputError`] for tangents that overflow `f32` when they are multiplied by that duration in seconds.
+    /// [`InputError`] for tangents that overflow `f32` when they are multiplied by their segment's duration in seconds.
     pub(crate) fn stored(&self, path: &str, is_rotation: bool) -> Result<Self, InputError> {
         let mut keys = self.clone();
         keys.times.iter_mut().filter(|time| **time < LEAST_TIME).for_each(|time| *time = 0.0);
@@ -109,7 +109,7 @@ pub(crate) fn check_times(path: &str, times: &[f32]) -> Result<(), InputError> {
     }
 }
 
-/// Negates quaternions where needed, so that each is closer to the previous quaternion than its negative.
+/// Negates each quaternion whose negative is closer to the previous quaternion.
 fn take_short_ways(values: &mut [[f32; 4]]) {
     for at in 1..values.len() {
         let (before, here) = (values[at - 1], values[at]);
@@ -120,8 +120,8 @@ fn take_short_ways(values: &mut [[f32; 4]]) {
     }
 }
 
-/// Multiplies each tangent by the seconds between its key and the next key on the tangent's side, as the spline formula
-/// requires.
+/// Multiplies each tangent by the duration of its segment in seconds, as the spline formula requires. The segment of an
+/// in-tangent ends at the key; the segment of an out-tangent starts at the key.
 fn stretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
     for (key, pair) in times.windows(2).enumerate() {
         for at in [3 * key + 2, 3 * key + 3] {

@@ -28,14 +28,15 @@ enum Kind {
     Whole,
 }
 
-/// Converts the number that a component encodes to a value.
+/// Converts the raw number of a component to a value.
 type Decode<T> = fn(Shape, f64) -> T;
 
 /// Elements of an accessor. They lie in a buffer view, or in a compressed primitive.
 pub struct Elements<'d, 'a> {
     pub document: &'d Document<'a>,
     pub accessor: Index<Accessor>,
-    /// The compressed primitive with these elements, and the name of the attribute there. `None` if they lie in a buffer view.
+    /// The compressed primitive that holds the elements, and the name of their attribute. `None` if the elements lie in a
+    /// buffer view.
     pub compressed: Option<(&'d Decompressed<'d>, String)>,
 }
 
@@ -43,7 +44,7 @@ impl Elements<'_, '_> {
     /// Reads the elements as vectors of `N` floats. Normalized integers become fractions.
     ///
     /// # Errors
-    /// [`InputError`] with the path of the fault in the file. Integers that are not normalized are a fault, too.
+    /// [`InputError`] with the path of the fault in the file; also for integers that are not normalized.
     pub fn vectors<const N: usize>(self) -> Result<Vec<[f32; N]>, InputError> {
         self.read(Kind::Fraction, float)
     }
@@ -68,7 +69,7 @@ impl Elements<'_, '_> {
     /// Reads the elements as vectors of `N` unsigned integers.
     ///
     /// # Errors
-    /// [`InputError`] with the path of the fault in the file. Floats and normalized integers are a fault, too.
+    /// [`InputError`] with the path of the fault in the file; also for floats and normalized integers.
     pub fn integers<const N: usize>(self) -> Result<Vec<[u32; N]>, InputError> {
         self.read(Kind::Whole, |_, number| number as u32)
     }
@@ -97,8 +98,8 @@ impl<'a> Document<'a> {
         Elements { document: self, accessor, compressed: None }
     }
 
-    /// Reads all components of the accessor at `path`, from its buffer view or as zeros. Replacements of a sparse accessor are
-    /// applied.
+    /// Reads all components of the accessor at `path`. Without a buffer view, they are zeros. Replacements of a sparse accessor
+    /// are applied.
     fn values<T: Copy + Default>(
         &self,
         path: &str,

@@ -6,8 +6,8 @@ use std::cell::Cell;
 
 use crate::InputError;
 
-/// Number of elements that every document may have, however small. An element is a vector or number of an accessor, counted
-/// each time it is read, or data derived from it.
+/// Number of elements that every document may have, however small. An element is a vector or a number that is read from an
+/// accessor, or derived from such data. It counts each time it is read.
 const ELEMENTS: u64 = 1 << 16;
 
 /// Elements allowed per byte of a document that refers to the same bytes repeatedly, up to [`MAX_REPEATED`] in total.
@@ -19,7 +19,7 @@ const MAX_REPEATED: u64 = 1 << 24;
 /// Elements allowed per byte of any document. A document that refers to its bytes only once has fewer.
 const ELEMENTS_A_BYTE: u64 = 4;
 
-/// Elements allowed per byte of a document with compressed meshes: Draco needs one byte for a triangle and half a vertex.
+/// Elements allowed per byte of a document with compressed meshes: Draco can encode a triangle and half a vertex in one byte.
 const ELEMENTS_A_PACKED_BYTE: u64 = 16;
 
 /// Number of decompressed bytes that count as one element: four floats.
@@ -64,7 +64,7 @@ impl Budget {
     /// Charges `count` elements before they are allocated. `path` names the count in errors.
     ///
     /// # Errors
-    /// [`InputError`] if the document then has more elements than it may have.
+    /// [`InputError`] if the total exceeds the number of elements that the document may have.
     pub fn spend(&self, path: &str, count: usize) -> Result<(), InputError> {
         let most = self.most();
         let all = self.elements.get().saturating_add(count as u64);

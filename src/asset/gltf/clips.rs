@@ -57,7 +57,7 @@ fn clip(
     Clip::new(name, &nodes.skeleton, &bones, duration)
 }
 
-/// Reads the keys of a node's morph weights: for each clip that has them, the clip's index and the keys.
+/// Reads the keys of a node's morph weights. Each entry has a clip's index, and the keys in that clip.
 pub fn weight_keys(
     document: &Document<'_>,
     node: usize,
@@ -84,13 +84,13 @@ pub fn weight_keys(
     Ok(all)
 }
 
-/// Error for a channel whose target an earlier channel of the animation already animates.
+/// Error for a channel that has the same target as an earlier channel of the animation.
 fn twice(animation: usize, channel: usize, node: usize) -> InputError {
     let path = format!("animations[{animation}].channels[{channel}].target");
     InputError::new(path, node, "must not be animated by two channels")
 }
 
-/// A sampler of an animation whose times are read, but not its values yet.
+/// A sampler of an animation. Its times have been read, its values have not.
 struct Sampler {
     /// Paths in the file of the sampler's times and of its values.
     paths: [String; 2],

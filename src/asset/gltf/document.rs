@@ -184,7 +184,7 @@ const BASE64: base64::engine::GeneralPurpose = base64::engine::GeneralPurpose::n
         .with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent),
 );
 
-/// Checks that the accessors of positions exist. gltf-json's validation would panic if one did not.
+/// Checks that the accessors of positions exist. Without this check, gltf-json's validation would panic for a missing accessor.
 fn positions_exist(root: &Root) -> Result<(), InputError> {
     let meshes = root.meshes.iter().enumerate();
     for (mesh, at, primitive) in

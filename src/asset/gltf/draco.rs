@@ -17,7 +17,7 @@ use crate::asset::mesh::MAX_VERTICES;
 #[serde(rename_all = "camelCase")]
 pub struct Draco {
     buffer_view: u32,
-    /// For each attribute, by name, its id within the compressed bytes.
+    /// Id of each attribute within the compressed bytes, by the name of the attribute.
     attributes: HashMap<String, u32>,
 }
 
@@ -64,7 +64,7 @@ impl Decompressed<'_> {
     /// Returns the values of an attribute, in the order of the vertices. `None` if the extension does not list the attribute.
     ///
     /// # Errors
-    /// [`InputError`] if the compressed mesh lacks the attribute, or has another number of components for it.
+    /// [`InputError`] if the compressed mesh lacks the attribute, or if the attribute has another number of components.
     pub fn attribute(&self, name: &str, components: usize) -> Result<Option<Vec<f32>>, InputError> {
         let Some(number) = self.attributes.get(name) else { return Ok(None) };
         let refused = |value: String, bound: &str| {

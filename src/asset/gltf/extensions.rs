@@ -1,4 +1,4 @@
-//! Extensions: the list of those that a document may require, and the data that gltf-json does not read.
+//! Extensions that a document may require, and the data of extensions that gltf-json does not read.
 
 use gltf_json::extensions::texture::TextureTransform;
 use serde::Deserialize;
@@ -54,7 +54,7 @@ pub struct Extensions {
     pub normal_transforms: Vec<Option<TextureTransform>>,
     /// For each buffer view, its meshoptimizer compression.
     pub meshopt: Vec<Option<Meshopt>>,
-    /// For each mesh and each of its primitives, its Draco compression.
+    /// For each mesh, the Draco compression of each of its primitives.
     pub draco: Vec<Vec<Option<Draco>>>,
     /// For each texture, the index of its `EXT_texture_webp` image.
     pub webp: Vec<Option<usize>>,
@@ -103,7 +103,7 @@ impl Extensions {
         self.draco.iter().flatten().any(Option::is_some) || self.meshopt.iter().any(Option::is_some)
     }
 
-    /// Refuses an instanced node if the import would read it, because only one of its copies would be read.
+    /// Refuses an instanced node that the import reads, because only one copy of its mesh would be read.
     pub fn check_copies(&self, is_read: &[bool]) -> Result<(), InputError> {
         match self.instanced.iter().zip(is_read).position(|(is_instanced, is_read)| *is_instanced && *is_read)
         {

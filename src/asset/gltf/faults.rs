@@ -99,7 +99,7 @@ fn out_of_list(document: &Value, steps: &[&str], field: &str) -> String {
     format!("must lie in the list {list}, below {count}")
 }
 
-/// Error for an attribute whose name glTF does not define. It names the attribute, which gltf-json does not report.
+/// Error for an attribute whose name glTF does not define. The error has the attribute's name, which gltf-json does not report.
 fn of_attribute(document: &Value, of_mesh: &[&str], path: &str) -> InputError {
     let is_known = |name: &str| {
         let set =

@@ -79,7 +79,7 @@ fn is_foreign(attribute: &str) -> bool {
     attribute.starts_with('_') || attribute.contains(':')
 }
 
-/// Sets the node and the path of a channel whose `KHR_animation_pointer` points at a node, such as `/nodes/3/rotation`.
+/// Sets the node and the path of a channel from its `KHR_animation_pointer`, if the pointer names a node (`/nodes/3/rotation`).
 fn resolve_pointer(channel: &mut Value) {
     let target = channel.get_mut("target").and_then(Value::as_object_mut);
     let Some(target) = target.filter(|target| !target.contains_key("node")) else { return };
@@ -95,8 +95,8 @@ fn resolve_pointer(channel: &mut Value) {
     }
 }
 
-/// Whether a channel has a target node. Extensions may animate other things than nodes; a reader that does not know the
-/// extension skips such a channel.
+/// Whether a channel has a target node. A channel without a node belongs to an extension. A reader that does not know the
+/// extension skips the channel.
 fn has_node(channel: &Value) -> bool {
     let target = channel.get("target").and_then(Value::as_object);
     target.is_none_or(|target| target.contains_key("node"))

@@ -2,33 +2,34 @@
 //!
 //! - **Scene.** Only one scene is imported: the default scene that the document names, or else its first scene. If the document
 //!   has no scene, every node is imported.
-//! - **Bones.** Bones are the joints of every skin that the scene's nodes use, each once, and all ancestors of those joints. A
-//!   joint's position in the scene is the product of all transforms from the root down, whether or not a skin uses the nodes,
-//!   and animations may move any of these nodes.
+//! - **Bones.** Bones are the joints of every skin that the scene's nodes use, each once, and all ancestors of those joints.
+//!   Ancestors are included because a joint's position in the scene is the product of all transforms from the root down.
+//!   Animations may move any of these nodes, even nodes that no skin uses.
 //! - glTF requires that joints lie in the same scene as the node with the skin. Joints outside the scene become bones
-//!   nevertheless, because vertices follow them; they are posed below their own root. A skin that no node uses counts if all
-//!   its joints lie in the scene.
+//!   nevertheless, because vertices follow them. Such joints are posed relative to their own root. A skin that no node uses is
+//!   imported if all its joints lie in the scene.
 //! - If there is no skin, bones are the nodes that carry meshes (see below), the nodes that an animation moves, and all their
 //!   ancestors. All of these are [joints](crate::asset::Skeleton::joints).
 //! - Matrices of nodes are decomposed into translation, rotation and scale.
 //! - Accessors may be sparse, interleaved, and of normalized integers. Buffers may lie in the GLB, in `data:` URIs, or in files
 //!   beside the document.
-//! - A channel that moves no node, or a node that is not a bone, is left out, but counts for the clip's duration.
+//! - A channel that animates morph weights, or a node that is not a bone, adds no keys to the clip. Its times still count for
+//!   the clip's duration.
 //! - **Meshes.** Each primitive becomes one [`Mesh`](crate::asset::Mesh), with vertices in the file's order. Meshes of nodes
 //!   with a skin come first, in the order of the nodes; meshes of nodes without a skin follow in the same order.
 //! - A mesh without a skin follows one bone, through a skin of its own. The bone is the lowest node, at or above the mesh's
 //!   node, that is a joint, an ancestor of joints, or animated. If there is none, the bone is the root of the tree, which never
-//!   moves. Such a node becomes a bone together with all its ancestors, but not a joint.
-//! - Strips and fans become lists of triangles; points and lines are left out. Primitives without positions are left out too;
-//!   if no primitive has positions, the document is refused.
+//!   moves. A node that becomes a bone for this reason does not become a joint. All its ancestors become bones as well.
+//! - Strips and fans become lists of triangles. Points, lines, and primitives without positions are left out. If no primitive
+//!   has positions, the document is refused.
 //! - Missing normals become smooth normals. Missing tangents, and tangents given without normals, are computed by MikkTSpace.
 //!   If there is a normal texture, MikkTSpace uses its texture coordinates, before any `KHR_texture_transform`. A vertex whose
 //!   corners have different tangents is duplicated at the end of its primitive, one copy per tangent.
 //! - A vertex whose weights are all 0 follows the joint in its first slot, as in three.js. A vertex with more than
 //!   [`MAX_INFLUENCES`](crate::asset::influences::MAX_INFLUENCES) joints follows the strongest of them.
 //! - Triangles that are mirrored at rest get the reverse winding, see [`Mesh::indices`](crate::asset::Mesh::indices). If only
-//!   some bones of a mesh mirror, this is decided triangle by triangle. A clip whose scale has another sign than at rest shows
-//!   such triangles from inside.
+//!   some bones of a mesh mirror, this is decided triangle by triangle. If a clip gives a bone's scale another sign than at
+//!   rest, the triangles that follow the bone are seen from inside.
 //! - **Materials.** The import reads base colour with its texture, the normal map with its scale, samplers, alpha, and
 //!   `doubleSided`. Images may be PNG, JPEG or WebP, in the GLB, in `data:` URIs or in files beside the document.
 //! - Textures may use any set of texture coordinates; `KHR_texture_transform` is applied to the coordinates. A normal map is
@@ -79,9 +80,10 @@
 //!
 //! - An accessor without a buffer view has at most 65,536 elements, or one for each byte of the document and its buffers,
 //!   whichever is more.
-//! - Data that is read repeatedly (meshes of several nodes, keys of several channels) has at most 128 elements per byte up to
-//!   16 million elements in total, or 4 per byte; or 16 per byte if meshes are compressed.
-//! - Images have at most 256 texels per byte, or 16 million texels in total. Their width and height are at most 8192.
+//! - Data that is read repeatedly (meshes of several nodes, keys of several channels) has at most 128 elements per byte, up to
+//!   16 million elements in total. Large documents may have more: 4 elements per byte, or 16 if meshes are compressed.
+//! - All images together have at most 256 texels per byte of the document, or 16 million texels, whichever is more. The width
+//!   and height of an image are at most 8192.
 
 mod accessor;
 pub(super) mod budget;

@@ -75,7 +75,7 @@ pub fn node_name(root: &Root, node: usize) -> String {
     root.nodes[node].name.clone().unwrap_or_else(|| format!("node_{node}"))
 }
 
-/// Skins that the scene's nodes use, and skins that no node uses but whose joints all lie in the scene.
+/// Skins that the scene's nodes use. Also skins that no node uses, if all their joints lie in the scene.
 fn used_skins(root: &Root, scene: &Scene) -> Vec<usize> {
     let (mut here, mut anywhere) = (vec![false; root.skins.len()], vec![false; root.skins.len()]);
     for (node, skin) in root.nodes.iter().enumerate().filter_map(|(at, node)| Some((at, node.skin?.value())))
@@ -124,7 +124,7 @@ fn animated(root: &Root) -> Vec<bool> {
     animated
 }
 
-/// Nodes of the scene with a mesh and one of `skins`. Each has the position of its skin in that list.
+/// Nodes of the scene with a mesh and one of `skins`. Each comes with the position of its skin in `skins`.
 fn skinned(root: &Root, scene: &Scene, skins: &[usize]) -> Vec<(usize, usize)> {
     let mut place = vec![None; root.skins.len()];
     skins.iter().enumerate().for_each(|(at, skin)| place[*skin] = Some(at));

@@ -23,7 +23,7 @@ use crate::asset::tangents::TangentMesh as Surface;
 /// coordinates and influence.
 const LACKING: usize = 4;
 
-/// Reads one primitive, whose path in the file it knows.
+/// Reader of one primitive. `path` is the primitive's path in the file.
 pub(super) struct Reader<'a, 'd> {
     pub(super) document: &'a Document<'d>,
     pub(super) primitive: &'a Primitive,
@@ -37,8 +37,9 @@ pub(super) struct Reader<'a, 'd> {
 }
 
 impl<'d> Reader<'_, 'd> {
-    /// Reads the primitive as a mesh that follows skin 0, without name, material and weights. Its influences must refer to the
-    /// bones of `skin`. `targets` is the number of morph targets that every primitive of the file's mesh must have.
+    /// Reads the primitive as a mesh with skin index 0, without name, material and weights. The primitive's influences must
+    /// refer to the bones of `skin`. `targets` is the number of morph targets that every primitive of the file's mesh must
+    /// have.
     pub(super) fn mesh(&self, skin: &Skin, targets: usize) -> Result<Mesh, InputError> {
         let path = self.named("POSITION");
         let Some(positions) = self.elements(&Semantic::Positions) else {
@@ -106,8 +107,8 @@ impl<'d> Reader<'_, 'd> {
         self.primitive.material.map(|material| &self.document.root.materials[material.value()])
     }
 
-    /// Texture coordinates of the mesh. If the material has a base colour texture, or else a normal map, its coordinates are
-    /// used and must exist. Without both textures, the first set is used, if there is one.
+    /// Texture coordinates of the mesh. They are the coordinates of the base colour texture, or else of the normal map, and
+    /// must exist. A material with neither texture uses the first set, if there is one.
     fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(texture) = self.coordinates_of_material() else {
             return self.attribute::<2>(&Semantic::TexCoords(0), vertices);
@@ -129,8 +130,8 @@ impl<'d> Reader<'_, 'd> {
         of_color.or_else(|| Coordinates::of_normals(self.document, index))
     }
 
-    /// Untransformed texture coordinates along which tangents run; `None` if the mesh has the same coordinates. They are the
-    /// normal map's coordinates, if the primitive has them, otherwise the mesh's coordinates before a transform.
+    /// Untransformed texture coordinates from which tangents are computed: the normal map's coordinates if the primitive has
+    /// them, otherwise the mesh's coordinates. `None` if the mesh itself uses exactly these coordinates.
     fn coordinates_of_normals(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(index) = self.primitive.material.filter(|_| !self.is_bare) else { return Ok(None) };
         let of_mesh = self.coordinates_of_material();

@@ -1,5 +1,5 @@
-//! Computes tangents for meshes without any by MikkTSpace, as glTF 2.0 requires in section 3.7.2.1. If the corners of a vertex
-//! have different tangents, for example where texture coordinates are mirrored, the vertex is duplicated for each tangent.
+//! Computes missing tangents of meshes by MikkTSpace, as section 3.7.2.1 of glTF 2.0 requires. If the corners of a vertex have
+//! different tangents, for example where texture coordinates are mirrored, the vertex is duplicated for each tangent.
 
 use std::collections::HashMap;
 
@@ -9,8 +9,8 @@ use crate::InputError;
 use crate::asset::mesh::Mesh;
 use crate::asset::tangents::{TangentMesh as Surface, tangents};
 
-/// Largest number of triangles around a vertex for which MikkTSpace is used. Its time grows with the square of that number, and
-/// it visits the triangles by recursion. A surface with more triangles around a vertex gets the tangents of
+/// Largest number of triangles around a vertex for which MikkTSpace is used. The time of MikkTSpace grows with the square of
+/// this number, and it visits the triangles by recursion. A surface with more triangles around a vertex gets the tangents of
 /// [`crate::surface::tangent`].
 const MAX_AROUND: u32 = 1024;
 
@@ -125,7 +125,7 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// Bit patterns of the components. Equal values give equal bits: −0 and +0 give the same.
+/// Bit patterns of the components. Equal values give equal bits, even −0 and +0.
 fn bits<const N: usize>(vector: [f32; N]) -> [u32; N] {
     one_zero(vector).map(f32::to_bits)
 }

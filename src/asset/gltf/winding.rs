@@ -1,6 +1,6 @@
-//! Winding: reverses triangles that are mirrored at rest, so that they are counter-clockwise seen from outside wherever the
-//! mesh is drawn. The sign of the determinant decides (glTF 2.0, section 3.7.4). For a skinned mesh, the matrix is each joint's
-//! global transform times its inverse bind matrix, because the transform of the mesh's own node has no effect.
+//! Winding: reverses triangles that are mirrored at rest, so that they are counter-clockwise seen from outside when the mesh is
+//! drawn. The sign of the determinant decides (glTF 2.0, section 3.7.4). For a skinned mesh, the matrix is each joint's global
+//! transform times its inverse bind matrix, because the transform of the mesh's own node has no effect.
 
 use glam::DMat4;
 
@@ -27,8 +27,7 @@ pub fn mirrors(mirrored: &[bool], skin: &Skin) -> Vec<bool> {
     if all.contains(&true) { all } else { Vec::new() }
 }
 
-/// Reverses triangles whose corners follow mirroring bones: the weights of these bones, added over the three corners, exceed
-/// 1.5.
+/// Reverses each triangle for which the weights of mirroring bones, added over the three corners, exceed 1.5.
 pub fn turn_mirrored(mesh: &mut Mesh, mirrors: &[bool]) {
     // Early exit for skins without mirroring bones, because files may have many meshes with large skins.
     if mirrors.is_empty() {

@@ -7,8 +7,7 @@
 //! - Corners with the same indices of position, texture coordinates and normal in the file become one vertex. Vertices are
 //!   sorted by these indices.
 //! - Polygons become triangles. Convex polygons become fans around their first corner. Other polygons are cut by ear clipping,
-//!   which leaves no corner out. Triangles that name a position twice are left out, and so are points, lines and free-form
-//!   surfaces.
+//!   which leaves no corner out. Points, lines, free-form surfaces, and triangles that name a position twice are left out.
 //! - A corner without a normal gets the smooth normal of its position: the area-weighted mean over all faces of the file that
 //!   meet there and lack normals. Smoothing groups are not read. Tangents are computed as for glTF.
 //! - Texture coordinates have their origin at the bottom of the image in the file, and at the top in the model.
@@ -18,8 +17,8 @@
 //!   left out.
 //! - From the options of maps, the import reads `-o`, `-s`, `-clamp` and `-bm`. Offset and scale of `map_Kd` are applied to the
 //!   texture coordinates.
-//! - A library that does not exist is left out. A material that no library has is left out too; its meshes then have no
-//!   material. Everything else that the file names must exist.
+//! - A library that does not exist is left out. A mesh whose material is in no library has no material. Everything else that
+//!   the file names must exist.
 //!
 //! Every error has the line, counted from 1, and the line's text. No file causes a panic. Memory grows linearly with the file;
 //! images have the same limits as in glTF ([`crate::asset::gltf`]).

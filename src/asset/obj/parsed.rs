@@ -36,7 +36,7 @@ pub(super) struct Parsed {
     pub faces: Vec<Vec<Corner>>,
     /// For each face, its line in the file.
     pub lines: Vec<usize>,
-    /// Ranges of consecutive faces with the same owner: the index of the first face, and the owner.
+    /// Runs of consecutive faces with the same owner. Each has the index of its first face, and the owner.
     runs: Vec<(usize, Owner)>,
     /// Material libraries that the file names, with the line of each statement.
     pub libraries: Vec<(usize, String)>,
@@ -50,8 +50,8 @@ impl Parsed {
     /// Reads the text of an OBJ file.
     ///
     /// # Errors
-    /// [`InputError`] with the line, for a statement that cannot be read, an index without a counterpart, and a coordinate out
-    /// of range. [`InputError`] also for a file without faces.
+    /// [`InputError`] with the line, for a statement that cannot be read, an index of an element that does not exist, or a
+    /// coordinate out of range. Also for a file without faces.
     pub fn new(bytes: &[u8]) -> Result<Self, InputError> {
         let mut parsed = Self::default();
         let mut owner = Owner::default();
@@ -123,8 +123,8 @@ impl Parsed {
     }
 }
 
-/// Converts an index of the file, from 1 upwards or from −1 backwards, to an index from 0 that is below `count`. The error says
-/// what the word must be.
+/// Converts an index of the file to an index that counts from 0 and is below `count`. In the file, positive indices count from
+/// 1, and negative indices count backwards from −1. The error says what the word must be.
 fn number(word: &str, count: usize) -> Result<u32, &'static str> {
     let given: i64 = word.parse().map_err(|_| CORNERS)?;
     let at = if given < 0 { given + count as i64 } else { given - 1 };

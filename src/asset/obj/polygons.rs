@@ -83,7 +83,7 @@ fn is_ear(flat: &[DVec2], left: &[usize], ear: [usize; 3]) -> bool {
         return false;
     }
     let is_inside = |p: DVec2| area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
-    // Other corners at the same positions, as at bridges to holes, do not count.
+    // Corners at the positions of a, b and c do not count. Bridges to holes have such corners.
     let is_corner = |p: DVec2| p == a || p == b || p == c;
     !left.iter().map(|corner| flat[*corner]).any(|p| is_inside(p) && !is_corner(p))
 }

@@ -56,7 +56,7 @@ impl<'a> Statements<'a> {
         Self { left: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), line: 0 }
     }
 
-    /// Returns the next line without its line ending, of any operating system.
+    /// Returns the next line without its line ending (LF, CR LF or CR).
     fn next_line(&mut self) -> Option<&'a [u8]> {
         if self.left.is_empty() {
             return None;
@@ -81,7 +81,7 @@ impl<'a> Iterator for Statements<'a> {
         loop {
             let mut text = String::from_utf8_lossy(self.next_line()?);
             let line = self.line;
-            // A comment never continues on the next line, even if it ends with a backslash, as a path may.
+            // A comment never continues on the next line, even if it ends with the backslash of a path.
             while text.ends_with('\\') && !text.trim_start().starts_with('#') {
                 let Some(more) = self.next_line() else { break };
                 text = format!("{} {}", text.trim_end_matches('\\'), String::from_utf8_lossy(more)).into();

@@ -83,8 +83,8 @@ impl<W: Write> ObjWriter<W> {
     }
 }
 
-/// Prints v, which points down in memory, as 1 − v, because OBJ counts v from the bottom. The digits suffice for a reader that
-/// subtracts the number from 1 in double precision.
+/// Prints v, which points down in memory, as 1 − v, because OBJ counts v from the bottom. The digits suffice to restore v if
+/// the reader subtracts the number from 1 in double precision.
 struct Upwards(f32);
 
 impl Display for Upwards {
@@ -111,7 +111,7 @@ impl Model {
     /// mesh's own space. If the model has a skeleton, convert it with [`at_rest`](crate::skinning::at_rest()) first.
     ///
     /// Colours, opacity, textures and normal maps are written. OBJ cannot express skins, clips, morph targets, levels of
-    /// detail, tangents, double-sided triangles, filters, and the limit of [`Alpha::Mask`]; these are not written.
+    /// detail, tangents, double-sided triangles, filters, and the threshold of [`Alpha::Mask`]; these are not written.
     ///
     /// [`Model::from_obj`] reads the same numbers back. Positions, normals and triangles are equal to the bit. Texture
     /// coordinates are equal to the bit if v is 0 or above 2⁻²⁹, and otherwise within 2⁻⁵³.
@@ -207,8 +207,8 @@ impl Library {
         Ok(library)
     }
 
-    /// Material name to write for a mesh. A mesh without a material names one that the library lacks, to end the previous
-    /// material.
+    /// Material name to write for a mesh. A mesh without a material gets a name that the library lacks, because this ends the
+    /// previous mesh's material.
     fn material(&self, mesh: &Mesh) -> Option<&str> {
         let named = mesh.material.and_then(|material| self.names.get(&material));
         named.or_else(|| (!self.names.is_empty()).then_some(&self.none)).map(String::as_str)

@@ -24,8 +24,8 @@ impl Model {
     /// Writes the model as binary glTF (`.glb`): skeleton, skins, meshes with morph targets, clips, materials and images.
     ///
     /// If the model was read from glTF or OBJ, [`Model::from_gltf`] reads equal meshes, skins and materials back. Positions,
-    /// normals, tangents, texture coordinates, triangles and keys of clips are equal to the bit. So are influences, up to the
-    /// rounding of weights that do not sum to 1. There are a few differences:
+    /// normals, tangents, texture coordinates, triangles and keys of clips are equal to the bit. Influences are also equal, up
+    /// to the rounding of weights that do not sum to 1. There are a few differences:
     ///
     /// - Bones that skins, meshes and clips do not need are not read again, and bones may have another order.
     /// - Tangents of cubic splines, and rotations, may differ in the last bit.
