@@ -7,7 +7,7 @@ pub const LANES: usize = 8;
 
 /// Random words for [`LANES`] counters `(x, y)` at once: Threefry-2x32 with 20 rounds (Salmon et al. 2011, `docs/sources.md`).
 ///
-/// The constants are written out here instead of taken from the shader, so that published known answers check both.
+/// The constants are not taken from the shader but written out here, so that published known answers check both implementations.
 #[inline(always)]
 pub fn threefry2x32(key: [u32; 2], x: [u32; LANES], y: [u32; LANES]) -> ([u32; LANES], [u32; LANES]) {
     const EVEN: [u32; 4] = [13, 15, 26, 6];

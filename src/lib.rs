@@ -7,7 +7,7 @@
 //! defines. Any number of views can show a scene. It is drawn in the caller's render pass. This interface is stable.
 //!
 //! - `scene` has objects, instances, views and queries. Its documentation begins with the order of calls and a complete program.
-//! - `render` has the renderer, which draws in the caller's render pass, shadows of the sun, and an off-screen target.
+//! - `render` has the renderer, the shadow of the sun, and an off-screen target. The renderer draws in the caller's render pass.
 //! - `scene_file` reads scenes from JSON, builds them and draws their frames.
 //! - `gpu` opens a device or takes the caller's device. It has typed buffers, prepared jobs and errors.
 //! - [`asset`] has plain data: models with skeletons, skins, clips, meshes and materials. It reads and writes glTF and Wavefront
@@ -22,8 +22,8 @@
 //! Further crates of the repository:
 //!
 //! - `relievo-samples` has a creature with clips, and height maps with their colours.
-//! - `relievo-lab` compares every kernel with its reference, and its time with copying the same number of bytes. It also reports
-//!   the cost and the visible error of levels of detail on the caller's own data.
+//! - `relievo-lab` compares every kernel with its reference, and the kernel's time with the time of copying the same number of
+//!   bytes. It also reports the cost and the visible error of levels of detail on the caller's own data.
 //! - `relievo-cli` is the program `relievo`.
 //!
 //! The documentation cites two theses as **A** and **B**, by section, table or equation. `docs/sources.md` in the repository has

@@ -7,10 +7,10 @@
 //!
 //! | module | operations |
 //! |---|---|
-//! | [`mesh`] | simplification, and stored levels that refine each other |
+//! | [`mesh`] | simplification, and progressive meshes: stored levels, and the patches between them |
 //! | [`terrain`] | heights from a seed, the same bits on every device; features, erosion, normals, colour maps |
 //! | [`surface`] | height maps, ray-height methods and the maps that accelerate them, tangent frames |
-//! | [`animation`] | sampling and concatenation of bones of crowds, layers, gates (level of detail), bounds, root motion |
+//! | [`animation`] | bones of crowds (sampling and concatenation), layers, gates (level of detail), bounds, root motion |
 //! | [`skinning`] | skinned and morphed meshes, their levels of detail, and the vertices that need work in a frame |
 //! | [`lod`] | culling, choice of levels, lists of instances and draws |
 //! | [`hash`](mod@hash) | counter-based random words |

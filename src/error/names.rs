@@ -3,8 +3,8 @@
 /// Largest number of names that a message lists.
 const LISTED: usize = 20;
 
-/// The bound of a value that must be one of `names` or an index into `names`. `what` is the plural of the named things, such as
-/// `bones`.
+/// The `bound` of an [`InputError`](crate::InputError) for a value that must be one of `names` or an index into `names`. `what`
+/// is the plural of the named things, such as `bones`.
 pub(crate) fn name_or_index<'a>(what: &str, names: impl ExactSizeIterator<Item = &'a str>) -> String {
     let count = names.len();
     if count == 0 {

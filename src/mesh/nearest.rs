@@ -8,7 +8,7 @@ macro_rules! nearest_on_triangle {
         $(#[$documentation])*
         #[inline]
         pub fn $name(point: $vector, [a, b, c]: [$vector; 3]) -> $vector {
-            // Returns `one / all` if the ratio is in 0..=1, otherwise 0. The result for 0 / 0 and NaN is 0 too.
+            // Returns `one / all` if the ratio is in 0..=1, otherwise 0. For 0 / 0 and NaN, the result is 0.
             let ratio = |one: $number, all: $number| {
                 let ratio = one / all;
                 if (0.0..=1.0).contains(&ratio) { ratio } else { 0.0 }
@@ -54,9 +54,10 @@ nearest_on_triangle! {
     /// inside (Ericson, "Real-Time Collision Detection", section 5.1.5). The triangle may be degenerate: a line or a
     /// point.
     ///
-    /// For triangle sizes and distances from 1e-8 to 1e9, the result is accurate to about 1e-6 of the larger of both.
-    /// Beyond this range, `f32` cannot represent their fourth powers, but the result still lies on the triangle. A
-    /// measured distance may then be too large but is never too small.
+    /// For triangle sizes and distances from 1e-8 to 1e9, the error is about 1e-6 of the size or the distance,
+    /// whichever is larger. Beyond this range, `f32` cannot represent the fourth powers of these lengths, but the
+    /// result still lies on the triangle. The distance from `point` to the result may be too large, but is never too
+    /// small.
     nearest_on_triangle, Vec3, f32
 }
 

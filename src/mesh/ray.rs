@@ -5,9 +5,9 @@ use glam::DVec3;
 /// Distance along a ray to a triangle, in multiples of the length of `direction`. The ray starts at the origin. `None`
 /// if the ray misses the triangle or lies in its plane.
 ///
-/// The ray hits the triangle if the tetrahedra spanned by the ray and each edge have volumes of the same sign. Adjacent
-/// triangles compute the same volume for their common edge, up to the sign. Therefore no ray slips through between two
-/// triangles.
+/// Each edge of the triangle spans a tetrahedron with the ray. The ray hits the triangle if the signed volumes of the
+/// three tetrahedra have the same sign. Adjacent triangles compute the same volume for their common edge, up to the
+/// sign. Therefore no ray slips through between two triangles.
 pub fn distance_to([a, b, c]: [DVec3; 3], direction: DVec3) -> Option<f64> {
     // Six times the signed volume of a tetrahedron.
     let volume = |from: DVec3, to: DVec3| direction.dot(from.cross(to));

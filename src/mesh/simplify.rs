@@ -1,31 +1,33 @@
-//! Mesh simplification by half-edge collapses. The cheapest collapse is made first, again and again: it merges a point
-//! of the surface into one of its neighbours. Vertices are neither moved nor created. Every level therefore uses a
-//! subset of the mesh's own vertices with their attributes. One run records every level (B section 3.2, after Hoppe,
-//! "Progressive Meshes", SIGGRAPH 1996).
+//! Mesh simplification by half-edge collapses. A collapse merges a point of the surface into one of its neighbours.
+//! Cheap collapses are made first. Vertices are neither moved nor created, so every level uses a subset of the mesh's
+//! own vertices, with their attributes. One run records every level (B section 3.2, after Hoppe, "Progressive Meshes",
+//! SIGGRAPH 1996).
 //!
-//! Vertices that share one position in every pose are grouped into one *point*. They are the *wedges* of the point, and
-//! differ in attributes. An edge whose two triangles use different wedges is part of a *seam*.
+//! Vertices that share one position in every pose are grouped into one *point*. These vertices are the *wedges* of the
+//! point. They differ in attributes. An edge whose two triangles use different wedges is part of a *seam*.
 //!
 //! # Legality
 //!
-//! A collapse is legal only if all of these conditions hold, at any cost:
+//! A collapse is legal only if all of these conditions hold, whatever its cost:
 //! - The link condition holds (Dey, Edelsbrunner, Guha and Nekhayev 1999), so the surface keeps its topology. Closed
 //!   surfaces stay closed, and manifold surfaces stay manifold. Points where the input is not manifold are kept.
-//! - No triangle's normal turns by more than 75° in any pose, and no triangle loses its area. (A section 4.1 has 90°,
-//!   but several collapses in a row may add up to more.) Triangles without area in the input are not restricted.
+//! - No triangle's normal turns by more than 75° in any pose, and no triangle loses its area. (The limit in A section
+//!   4.1 is 90°, but the turns of several collapses in a row can add up to a flip.) Triangles without area in the input
+//!   are not restricted.
 //! - A point on a border moves only along that border.
 //! - Every wedge of the point moves to a wedge with which it shares an edge. Seams therefore collapse only along
-//!   themselves: no triangle leaves its texture chart, and no holes appear. Where wedges are split at only one end of
-//!   an edge, as at the poles of a sphere, adjacent wedges count as one. If every triangle has its own vertices,
-//!   nothing can collapse. Index such meshes first, or allow seams to be crossed ([`Seams::Crossed`]).
+//!   themselves: no triangle leaves its texture chart, and no holes appear. At the poles of a sphere, for example,
+//!   wedges are split at only one end of an edge. Such adjacent wedges count as one. If every triangle has its own
+//!   vertices, nothing can collapse. Merge equal vertices of such a mesh first, or allow seams to be crossed
+//!   ([`Seams::Crossed`]).
 //!
 //! # Parts
 //!
 //! A part is a connected piece of the surface. A closed part keeps at least four triangles, even if it is tiny. Unless
 //! [`SimplifyOptions::prune`] is off, parts can also vanish as a whole. A part vanishes if the next collapse would cost
 //! more than half of the part's distance to the other parts. The distance is measured from the part's points, and from
-//! the points of neighbouring parts that vanished before. (The option `Prune` of meshoptimizer compares the radius of a
-//! part.)
+//! the points of neighbouring parts that vanished before. (The option `Prune` of meshoptimizer uses the radius of the
+//! part instead of this distance.)
 //!
 //! # Several poses
 //!
@@ -36,9 +38,9 @@
 //!
 //! Collapses are approximately ordered by cost, the cheapest first. Squared costs within a quarter of an octave count
 //! as equal, and are taken in the order in which they were found. A point's cost is recomputed only when its turn
-//! comes, so a point that has become cheaper is taken late. In seven of eight steps, the cost is within a tenth of the
-//! smallest cost of any point. A point's target is the neighbour with the smallest mean term of [`Cost::Quadric`]; the
-//! other term is computed afterwards. An exact order takes longer, and gave no smaller error in tests.
+//! comes, so a point that has become cheaper is taken late. In seven of eight steps, the collapse costs at most a tenth
+//! more than the cheapest one. A point collapses into the neighbour for which the mean term of [`Cost::Quadric`] is
+//! smallest. The other term is computed afterwards. An exact order takes longer, and gave no smaller error in tests.
 //!
 //! The same input gives the same collapses on every machine ([`Simplified::hash`]): the code uses only `+ − × ÷` and
 //! square roots, in a fixed order. The computing time grows slightly faster than the number of triangles, and linearly
@@ -74,8 +76,8 @@ pub struct Surface<'a> {
     /// Three indices per triangle.
     pub indices: &'a [u32],
     /// Attributes of all vertices in the first pose: `stride` finite numbers per vertex, such as normals and texture
-    /// coordinates. An attribute difference of 1 over a square costs as much as a distance equal to the square's edge.
-    /// For normals, unit vectors scaled by a tenth are a good start.
+    /// coordinates. Over the area of a square, an attribute difference of 1 costs as much as a displacement by the
+    /// square's edge length. For normals, unit vectors scaled by a tenth are a good first choice.
     pub attributes: &'a [f32],
     /// Number of attribute values per vertex; may be 0.
     pub stride: usize,
@@ -89,13 +91,14 @@ pub enum Cost {
     /// triangle's weight is the square root of its area, so that details count.
     ///
     /// A mean can hide a large error at one spot. The cost is therefore at least 0.35 times the point's own distance
-    /// from the planes of its triangles after the collapse. On a border, the distance from the border's new edge counts
-    /// too. Planes perpendicular to borders and seams hold these in place (section 6 of the paper).
+    /// from the planes of its triangles after the collapse. On a border, the distance from the border's new edge also
+    /// counts. Additional planes hold borders and seams in place: they contain the edge and are perpendicular to the
+    /// surface (section 6 of the paper).
     ///
     /// Attributes add a cost, computed separately for each wedge (Hoppe, "New Quadric Metric for Simplifying Meshes
-    /// with Appearance Attributes", Visualization 1999). With attributes, the larger of two distances is added to that
-    /// cost: 0.63 times the point's own distance, and 1.26 times the distance between the middle of a new edge and the
-    /// previous triangles.
+    /// with Appearance Attributes", Visualization 1999). With attributes, the minimum above does not apply. Instead,
+    /// the larger of two distances is added to the cost: 0.63 times the point's own distance, and 1.26 times the
+    /// distance between the middle of a new edge and the previous triangles.
     #[default]
     Quadric,
     /// Edge length times curvature (Melax, "A Simple, Fast, and Effective Polygon Reduction Algorithm", 1998; B
@@ -105,8 +108,9 @@ pub enum Cost {
         /// Whether to refuse a collapse between two points whose normals are more than 90° apart in the first pose (B
         /// section 3.2.3).
         ///
-        /// **Decided**: a point's normal is the sum of the *unit* normals of its triangles, which B's equation 3.1
-        /// compares. B defines normals as cross products (3.2.3), which would weight them by area.
+        /// **Decided**: a point's normal is the sum of the *unit* normals of its triangles, because B's equation 3.1
+        /// compares unit normals. B defines normals as cross products (3.2.3), but these would weight the triangles by
+        /// area.
         check_normals: bool,
     },
 }
@@ -118,10 +122,10 @@ pub enum Seams {
     #[default]
     Held,
     /// Seams may be crossed if their wedges differ only in the first `attributes` numbers of [`Surface::attributes`].
-    /// Each wedge then moves to the cheapest vertex of the neighbour that has the same other numbers. For example, if
-    /// normals come before texture coordinates, `attributes: 3` allows hard edges to collapse and keeps texture seams.
-    /// Crossing costs the difference of the attributes over the affected area. (The option `Permissive` of
-    /// meshoptimizer.)
+    /// Each wedge then moves to the cheapest of the neighbour's vertices that have the same remaining numbers. For
+    /// example, if normals come before texture coordinates, `attributes: 3` allows hard edges to collapse and keeps
+    /// texture seams. Crossing costs the difference of the attributes over the affected area. (In meshoptimizer, this
+    /// is the option `Permissive`.)
     Crossed {
         /// Number of leading attributes that may differ, 0 to [`Surface::stride`].
         attributes: usize,
@@ -137,15 +141,15 @@ pub struct SimplifyOptions {
     pub cost: Cost,
     /// Whether collapses may cross seams.
     pub seams: Seams,
-    /// Target number of triangles. The result may have one triangle less, or fewer if a part vanishes.
+    /// Target number of triangles. The result may have one triangle fewer, and still fewer if a part vanishes.
     pub triangles: usize,
     /// Largest cost of a collapse, in the units of positions: at least 0, may be infinite.
     pub error: f32,
-    /// Whether disconnected parts of the surface may vanish as a whole. The cost of a part is half of the largest
-    /// distance from its points to the other remaining parts, in the worst pose, plus the variation of its attributes
-    /// over its area. A screw thus vanishes with the details of its plate, and a lone rock stays. One part always
-    /// stays. With tens of thousands of parts, this search takes longer than all collapses. The option works with
-    /// [`Cost::Quadric`] only, and has no effect in [`simplify_within`].
+    /// Whether disconnected parts of the surface may vanish as a whole. The cost of a part has two terms. The first is
+    /// half of the largest distance from its points to the other remaining parts, in the worst pose. The second is the
+    /// variation of its attributes over its area. For example, a screw vanishes when its plate loses details of similar
+    /// size, but a lone rock stays. One part always stays. With tens of thousands of parts, this search takes longer
+    /// than all collapses. The option works with [`Cost::Quadric`] only, and has no effect in [`simplify_within`].
     pub prune: bool,
 }
 
@@ -178,7 +182,8 @@ pub enum Stopped {
     Triangles,
     /// The next collapse would cost more than [`SimplifyOptions::error`].
     Error,
-    /// No collapse is legal; the reason is not known more closely. Reducers without half-edge collapses report only this.
+    /// No collapse is legal, for an unknown reason. Reducers without half-edge collapses report this instead of the
+    /// reasons below.
     Exhausted,
     /// No collapse is legal: most remaining points are on seams that would break, or where several seams meet.
     /// [`Seams::Crossed`] helps.
@@ -250,8 +255,8 @@ impl Simplified {
         self.stopped
     }
 
-    /// Number of leading collapses that leave at most `triangles` triangles. If this is never reached, the number of
-    /// all collapses.
+    /// Smallest number of collapses after which at most `triangles` triangles are left. If this is never reached, the
+    /// number of all collapses.
     pub fn collapses_to(&self, triangles: usize) -> usize {
         if self.triangles <= triangles {
             return 0;
@@ -271,7 +276,8 @@ impl Simplified {
         self.collapses.partition_point(|collapse| collapse.distance <= distance)
     }
 
-    /// Number of the point that a vertex belongs to. All vertices at one position have the same number.
+    /// Index of the point to which a vertex belongs. Vertices that share their position in every pose have the same
+    /// index.
     ///
     /// # Panics
     /// If there is no such vertex.
@@ -286,8 +292,8 @@ impl Simplified {
         a != b && b != c && c != a
     }
 
-    /// SHA-256 of the sequence of collapses, in hexadecimal digits, the same on every machine. For each collapse it
-    /// covers the number of triangles, the bits of error and distance, and the removed vertices with their
+    /// SHA-256 of the sequence of collapses, in hexadecimal digits, the same on every machine. For each collapse, the
+    /// hash covers the number of triangles, the bits of error and distance, and the removed vertices with their
     /// replacements.
     pub fn hash(&self) -> String {
         let mut words = vec![self.points.len() as u32, self.triangles as u32];
@@ -349,14 +355,14 @@ impl Simplified {
 /// # Errors
 /// [`InputError`] in these cases: there is no pose, or poses differ in length; indices are out of range or not three
 /// per triangle; there are not `stride` attributes per vertex; a number is not finite; the error limit is negative or
-/// NaN; [`Seams::Crossed`] has more attributes than there are.
+/// NaN; [`Seams::Crossed`] names more than `stride` attributes.
 pub fn simplify(surface: &Surface<'_>, options: &SimplifyOptions) -> Result<Simplified, InputError> {
     simplify_within(surface, options, &[f32::INFINITY])
 }
 
 /// Simplifies a mesh as far as possible within each of `distances` in turn. Every removed point stays within the
-/// current distance of the remaining surface, in every pose. Each removed point is close to one triangle, the same in
-/// all poses. No part vanishes.
+/// current distance of the remaining surface, in every pose. For each removed point, the same triangle is within this
+/// distance in all poses. Parts do not vanish as a whole.
 ///
 /// These distances are measured, whereas [`SimplifyOptions::error`] limits an average. At the same number of triangles,
 /// [`simplify()`] gives the smaller average error, and this function the smaller maximum. It takes a few times longer.
@@ -375,7 +381,8 @@ pub fn simplify_within(
 
 /// As [`simplify_within`], with rigid bodies and progress reports. `bodies` has the rigid body of each vertex, or
 /// [`NO_BODY`]; the list may be empty. Vertices of one body keep their distances from each other in every pose. `watch`
-/// is called repeatedly with the fraction of triangles removed so far, and may break.
+/// is called repeatedly with the fraction of triangles removed so far. It can stop the simplification by returning
+/// `Break`.
 ///
 /// # Errors
 /// The same errors as [`simplify_within`].
@@ -407,7 +414,7 @@ pub(crate) fn simplify_watched<B>(
     Ok(reducer::reduce(surface, options, distances, bodies, watch))
 }
 
-/// For each vertex, the number of its point. Vertices with the same position in every pose share a point. Points are
+/// For each vertex, the index of its point. Vertices with the same position in every pose share a point. Points are
 /// numbered in the order of their first vertices.
 pub fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     Points::new(poses).into_of()

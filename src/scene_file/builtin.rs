@@ -22,7 +22,7 @@ pub trait BuiltIns {
     fn map(&self, name: &str) -> Result<(HeightMap, RgbaImage), InputError>;
 }
 
-/// A provider without models and height maps: scene files may then name only files.
+/// A provider without models and height maps, for scene files that name no built-ins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoBuiltIns;
 

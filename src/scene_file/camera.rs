@@ -32,7 +32,7 @@ pub(super) struct CameraKey {
 }
 
 impl CameraPath {
-    /// The time of the path's last key, in seconds. The camera stands still after it, and before the first key.
+    /// The time of the path's last key, in seconds. The camera stands still after this time, and before the first key.
     pub fn end(&self) -> f64 {
         self.keys[self.keys.len() - 1].time
     }

@@ -29,7 +29,7 @@ pub(super) struct ObjectEntry {
     pub kind: EntryKind,
     /// Transition of the object's levels of detail; `None` for the scene's transition.
     pub transition: Option<Transition>,
-    /// How the object's levels of detail are chosen; `None`: by error.
+    /// How the object's levels of detail are chosen. With `None`, they are chosen by error.
     pub level_of_detail: Option<LevelOfDetail>,
     pub instances: Vec<InstanceEntry>,
     pub scatter: Option<Scatter>,
@@ -75,7 +75,7 @@ impl std::fmt::Display for Source {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ReliefEntry {
     pub heights: Source,
-    /// Whether the alpha channel has the heights, instead of the brightness.
+    /// Whether the image's alpha channel has the heights. Otherwise, the brightness has them.
     pub is_alpha: bool,
     pub albedo: Option<Source>,
     pub normals: Option<Source>,
@@ -112,7 +112,7 @@ pub(super) struct InstanceEntry {
 pub(super) enum Spot {
     /// A position in the world.
     At(DVec3),
-    /// A position on the drawn ground, `lift` model units above it.
+    /// A position `lift` model units above the drawn ground.
     On { x: f64, z: f64, lift: f64 },
 }
 

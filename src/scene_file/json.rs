@@ -19,8 +19,8 @@ impl Json {
     /// Parses a JSON text.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not JSON, with the path as far as it is known, and for a field that is given
-    /// twice.
+    /// [`InputError`] in two cases: the text is not JSON, or a field is given twice. The error has the path as far as it is
+    /// known.
     pub fn parse(text: &str) -> Result<Self, InputError> {
         let mut reader = serde_json::Deserializer::from_str(text);
         let json: Self = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
@@ -140,7 +140,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// Cursors at the entries of the list at the cursor, which must have `least` to `most` entries.
+    /// The value at the cursor as a list of `least` to `most` entries. Returns one cursor per entry.
     pub fn list(&self, least: usize, most: usize) -> Result<Vec<Self>, InputError> {
         let Value::Array(all) = self.value else { return Err(self.error("must be a list")) };
         if !(least..=most).contains(&all.len()) {
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(refused(r#"{"a": 1} 2"#), "scene");
         assert_eq!(refused(r#"{"a": {"b": 1, "b": 2}}"#), "a.b");
         assert_eq!(refused(r#"{"a": [1, 1e999]}"#), "a[1]");
-        // Lists nested deeper than in any scene are refused.
+        // A text with very deeply nested lists is refused.
         assert!(Json::parse(&format!("{}{}", "[".repeat(9999), "]".repeat(9999))).is_err());
     }
 }

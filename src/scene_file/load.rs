@@ -20,8 +20,9 @@ use crate::terrain::config::ZoneTexture;
 use crate::terrain::texture::TerrainTexture;
 use crate::{InputError, srgb};
 
-/// Levels of detail are computed from a quarter of the poses that [`poses_of`] counts, 15 poses a second, within these bounds.
-/// Fewer poses let a scene load in seconds. `relievo scene --compare` measures the effect.
+/// Levels of detail are computed from a quarter of the poses that [`poses_of`] counts: 15 poses a second, but at least
+/// `LEAST_POSES` and at most `MOST_POSES`. Fewer poses let a scene load in seconds. `relievo scene --compare` measures the
+/// effect.
 const SPARSER: usize = 4;
 const LEAST_POSES: usize = 9;
 const MOST_POSES: usize = 48;
@@ -69,13 +70,13 @@ impl SceneFile {
     /// Reads the files that the scene names through `read`, and computes levels of detail.
     ///
     /// `read` gets paths relative to the scene file. Names with the prefix `builtin:` come from `built_ins`;
-    /// [`NoBuiltIns`](super::NoBuiltIns) has none. Levels are computed for all meshes, and for characters in the clips that they
-    /// play, from 15 poses a second and at most 48 per clip. A model that several objects show is read and simplified only once,
-    /// for all of their clips together.
+    /// [`NoBuiltIns`](super::NoBuiltIns) has none. Levels are computed for all meshes and characters. For characters, they fit
+    /// the clips that the characters play, at 15 poses a second and at most 48 poses per clip. A model that several objects show
+    /// is read and simplified only once, for the clips of all these objects.
     ///
     /// # Errors
-    /// [`InputError`] with the path of the name in the scene file, for a file that cannot be read or understood, for a file that
-    /// does not suit its use, and for a clip that a model does not have.
+    /// [`InputError`] with the path of the name in the scene file, in these cases: a file cannot be read or understood; a file
+    /// does not suit its use; a model does not have a clip.
     pub fn load(
         &self,
         read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
@@ -247,7 +248,7 @@ impl<'a> Files<'a> {
         Ok(Relief { options, material, double_sided, ..made })
     }
 
-    /// The heights of a relief, and the colours that the same file or built-in map has.
+    /// The heights of a relief, and the colours in the same file or built-in map, if there are any.
     fn heights(
         &self,
         path: &str,
@@ -290,7 +291,7 @@ impl<'a> Files<'a> {
     }
 }
 
-/// Reports a mistake inside a file, with the path of the file's name in the scene file.
+/// Reports a mistake inside a file. The path of the error leads to the file's name in the scene file.
 fn within(path: &str, source: &Source, error: &InputError) -> InputError {
     InputError::new(path, source, error.to_string())
 }

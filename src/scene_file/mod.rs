@@ -1,9 +1,10 @@
 //! Scene files: JSON that describes terrain, models, reliefs, a light and a camera. `relievo scene`, the demo and the golden
 //! tests draw such files. Any program can do so with this module.
 //!
-//! [`SceneFile::from_json`] checks the JSON text. [`SceneFile::load`] reads the files that the text names through a function of
-//! the caller, so it works without a file system. Names with the prefix `builtin:` come from the caller's [`BuiltIns`].
-//! `LoadedScene::build` creates a [`Scene`](crate::scene::Scene); [`LoadedScene::build_async`] does so without blocking.
+//! [`SceneFile::from_json`] checks the JSON text. [`SceneFile::load`] reads the files that the text names. It reads them through
+//! a function of the caller, so it works without a file system. Names with the prefix `builtin:` come from the caller's
+//! [`BuiltIns`]. `LoadedScene::build` creates a [`Scene`](crate::scene::Scene); [`LoadedScene::build_async`] does so without
+//! blocking.
 //!
 //! Every mistake is an [`InputError`](crate::InputError) with its path inside the file (`characters[1].scatter.count`),
 //! the value and the bound.

@@ -166,7 +166,8 @@ fn patch(at: &At<'_>) -> Result<[i32; 2], InputError> {
     Ok(patch)
 }
 
-/// Puts an error's path below `path`. `whole` is the path of an error about the whole value.
+/// Prepends `path` to an error's path. If the error's path is `whole`, the error is about the whole value, and its path becomes
+/// `path`.
 pub(super) fn below(path: &str, whole: &str, error: InputError) -> InputError {
     let inner = if error.path == whole { path.to_owned() } else { format!("{path}.{}", error.path) };
     InputError { path: inner, ..error }

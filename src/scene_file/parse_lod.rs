@@ -9,7 +9,7 @@ use crate::scene::{
 };
 use crate::shared::lod::object::{OBJECT_LEVELS, RANKS};
 
-/// Upper limit of a triangle budget; the budget must be smaller.
+/// Exclusive upper limit of a triangle budget.
 const MAX_TRIANGLES: i64 = 1 << 32;
 
 /// The largest distance, area, magnification or time that a file may give.
@@ -27,7 +27,7 @@ pub(super) fn quality(at: &At<'_>) -> Result<(Quality, Transition), InputError> 
     Ok((quality, fields.maybe("transition", |at| transition(&at))?.unwrap_or_default()))
 }
 
-/// A transition: its name, or an object with its name and its pace.
+/// A transition: its name, or a JSON object with its name and options.
 pub(super) fn transition(at: &At<'_>) -> Result<Transition, InputError> {
     if !at.value().is_object() {
         return at.one_of(Transition::NAMES);

@@ -85,7 +85,7 @@ fn image(at: At<'_>) -> Result<Source, InputError> {
     source(&at, &["png", "jpg", "jpeg"], "must be a .png or .jpg file")
 }
 
-/// The source that a string names: a built-in name, or a file with one of these endings. `endings` are in lower case.
+/// The source that a string names: a built-in name, or a file with one of `endings`, which are in lower case.
 fn source(at: &At<'_>, endings: &[&str], bound: &str) -> Result<Source, InputError> {
     let text = at.text()?;
     if let Some(name) = text.strip_prefix(BUILT_IN) {

@@ -4,7 +4,7 @@ use super::entries::Scatter;
 use crate::InputError;
 use crate::hash::{LANES, key_of, threefry2x32};
 
-/// Number of random positions tried per instance. If they do not suffice, the area is refused for lack of ground.
+/// Number of random positions tried per instance. If they do not suffice, the area has too little ground and is refused.
 const DRAWS: u64 = 64;
 
 /// Random position of an instance, and its other random values.

@@ -70,8 +70,8 @@ impl LoadedScene {
     /// Builds the scene: adds all objects and spawns all instances. Waits until the device has generated the terrain.
     ///
     /// # Errors
-    /// [`InputError`], with the path in the scene file, for instances on the ground where the terrain has no patch, and for
-    /// objects that the device cannot hold; [`crate::gpu::GpuError`] for other failures of the device.
+    /// [`InputError`], with the path in the scene file, in two cases: the terrain has no patch below an instance on the ground,
+    /// or the device cannot hold an object. [`crate::gpu::GpuError`] for other failures of the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn build(&self, gpu: &Gpu) -> Result<World, Error> {
         gpu.block_on(self.build_async(gpu))
@@ -191,7 +191,8 @@ impl LoadedScene {
     }
 }
 
-/// Start time of a clip in seconds, so that the fraction `phase` of the clip has been played at the time `play.start`.
+/// Start time of a clip in seconds. With this start time, the fraction `phase` of the clip has been played at the time
+/// `play.start`.
 fn begun(play: &PlayEntry, model: &Model, phase: f64) -> Result<f64, InputError> {
     let clip = model.clip(play.clip.as_deref().unwrap_or("0"))?;
     let rate = if play.rate == 0.0 { 1.0 } else { f64::from(play.rate) };

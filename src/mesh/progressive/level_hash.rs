@@ -3,8 +3,8 @@
 use crate::asset::Mesh;
 use crate::hash::sha256;
 
-/// SHA-256 of a level: of the attributes of its vertices, which are the first `vertices` of the mesh, and of its
-/// triangles.
+/// SHA-256 of a level's vertices and triangles. The level's vertices are the first `vertices` vertices of the mesh, and
+/// are hashed with all attributes.
 pub(super) fn hash(mesh: &Mesh, level: u32, vertices: u32) -> String {
     let count = vertices as usize;
     let mut words = vec![vertices, mesh.triangles(level).len() as u32];

@@ -2,9 +2,9 @@
 //! Hoppe, "Progressive Meshes", SIGGRAPH 1996). A level is a prefix of the vertices, and a list of triangles. Two
 //! successive levels differ by a range of vertices and an [`IndexPatch`] for the list of triangles.
 //!
-//! Vertices are sorted by the coarsest level that has them. Within a level, they are sorted by the bones that they
-//! follow, so that clusters of vertices follow few bones. Next comes the time of their collapse, latest first.
-//! Triangles keep the mesh's order at every level.
+//! Vertices are sorted by three keys. The first key is the coarsest level that has the vertex, coarse levels first. The
+//! second key is the bones that the vertex follows, so that clusters of vertices follow few bones. The third key is the
+//! time of the vertex's collapse, latest first. Triangles keep the mesh's order at every level.
 //!
 //! Every vertex has a *partner*, which replaces the vertex in the first level that lacks it.
 //! [`ProgressiveMesh::morphed`] moves the vertices of a level towards their partners (A section 7.5; Hoppe's geomorph).
@@ -71,8 +71,8 @@ pub struct ProgressiveMesh {
 }
 
 impl ProgressiveMesh {
-    /// Builds levels from a recorded sequence of collapses, which must come from the mesh's own triangles. `chosen`
-    /// describes the levels 1, 2 …. The mesh's own levels and partners are ignored.
+    /// Builds levels from a recorded sequence of collapses. The sequence must have been recorded for this mesh.
+    /// `chosen` describes level 1 and the coarser levels. The mesh's own levels and partners are ignored.
     ///
     /// # Errors
     /// [`InputError`] in these cases: [`Mesh::validate`] refuses the mesh; the sequence belongs to another mesh; there
@@ -164,7 +164,7 @@ impl ProgressiveMesh {
     }
 
     /// SHA-256 of a level, as 64 hexadecimal digits. It covers all attributes of the level's vertices, and the level's
-    /// triangles. Two levels with the same hash are equal to the bit.
+    /// triangles. Two levels with the same hash are identical bit for bit.
     pub fn hash(&self, level: usize) -> &str {
         &self.hashes[level]
     }
@@ -177,8 +177,8 @@ impl ProgressiveMesh {
     /// Replaces the triangles of level `level` + 1 by the triangles of `level`.
     ///
     /// # Errors
-    /// [`InputError`] if `level` is the coarsest level, or if `triangles` are not those of the expected level. They
-    /// then stay unchanged.
+    /// [`InputError`] if `level` is the coarsest level, or if `triangles` are not the triangles of level `level` + 1.
+    /// In both cases, `triangles` stays unchanged.
     pub fn refine(&self, level: usize, triangles: &mut Vec<u32>) -> Result<(), InputError> {
         *triangles = self.checked_patch(level)?.applied(triangles, &self.mesh.partners)?;
         Ok(())
@@ -187,7 +187,8 @@ impl ProgressiveMesh {
     /// Replaces the triangles of `level` by the triangles of level `level` + 1.
     ///
     /// # Errors
-    /// The same errors as [`ProgressiveMesh::refine`].
+    /// [`InputError`] if `level` is the coarsest level, or if `triangles` are not the triangles of `level`. In both
+    /// cases, `triangles` stays unchanged.
     pub fn coarsen(&self, level: usize, triangles: &mut Vec<u32>) -> Result<(), InputError> {
         *triangles = self.checked_patch(level)?.undone(triangles, &self.mesh.partners)?;
         Ok(())
@@ -198,8 +199,8 @@ impl ProgressiveMesh {
         self.patches.get(level).ok_or_else(|| InputError::new("level", level, bound()))
     }
 
-    /// For each vertex of a level, its partner in the next coarser level. A vertex that the coarser level has too is
-    /// its own partner. So are all vertices of the coarsest level.
+    /// For each vertex of a level, its partner in the next coarser level. A vertex that the coarser level also has is
+    /// its own partner. In the coarsest level, every vertex is its own partner.
     pub fn partners(&self, level: usize) -> Vec<u32> {
         let kept = self.vertices.get(level + 1).copied().unwrap_or(u32::MAX);
         let partner = |vertex: u32| if vertex < kept { vertex } else { self.mesh.partners[vertex as usize] };
@@ -207,9 +208,10 @@ impl ProgressiveMesh {
     }
 
     /// Interpolates values of a level's vertices towards the next coarser level: `a · (1 − t) + b · t`, where a is the
-    /// vertex's value and b its partner's. `values` are positions in any pose, normals or texture coordinates, at least
-    /// one per vertex of the level. At t = 0 the result equals the level's values to the bit, and at t = 1 the
-    /// partners' values (except for the sign of 0). Influences are not blended: move positions after skinning.
+    /// vertex's value and b is its partner's value. `values` are positions in any pose, normals or texture coordinates,
+    /// at least one per vertex of the level. At t = 0 the result equals the level's values bit for bit. At t = 1 it
+    /// equals the partners' values (except for the sign of 0). Influences of bones are not interpolated, so pass
+    /// positions after skinning.
     ///
     /// # Errors
     /// [`InputError`] if `t` is outside 0..=1, or if there are too few values.

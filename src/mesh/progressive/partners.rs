@@ -11,13 +11,13 @@ pub(crate) struct Became<'a> {
 }
 
 /// The partner of each vertex ([`Mesh::partners`](crate::asset::Mesh::partners)). `finest` are the triangles of level
-/// 0, and `levels` the levels 1, 2 …. `place` gives the mesh of a vertex, and a number that is the same for all
-/// vertices at its position.
+/// 0, and `levels` the levels 1, 2 …. `place` returns the mesh of a vertex, and a number for its position. All vertices
+/// at one position have the same number.
 ///
-/// A vertex may have collapsed into a vertex that no triangle of the level uses, or that belongs to another mesh. This
-/// happens if its triangles vanish. Its partner is then another vertex of its own mesh at that position, which is valid
-/// because degenerate triangles depend on positions only. If no such vertex exists, one of the collapsed vertices
-/// becomes the partner of all others with this target position.
+/// A vertex may have collapsed into a target that no triangle of the level uses, or that belongs to another mesh. This
+/// happens if all triangles of the vertex vanish. Its partner is then another vertex of its own mesh, at the target's
+/// position. This is valid because degenerate triangles depend on positions only. If no such vertex exists, one of the
+/// vertices that collapsed to this position becomes the partner of the others.
 pub(crate) fn partners(
     finest: &[u32],
     levels: &[Became<'_>],
@@ -38,7 +38,7 @@ pub(crate) fn partners(
             *first = (*first).min(*vertex);
         }
         let gone = || finer.iter().copied().filter(|vertex| !here[*vertex as usize]);
-        // A stand-in that already lies at the target position is preferred.
+        // A vertex that already lies at the target's position is preferred as the partner.
         for is_there in [true, false] {
             for vertex in gone().filter(|vertex| !is_kept(target(*vertex), *vertex)) {
                 if !is_there || key(vertex) == place(vertex) {

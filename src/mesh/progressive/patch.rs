@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::InputError;
 
-/// Difference from the next coarser level to a level: vertices and triangles to add, and corners to change from a
-/// vertex's partner to the vertex itself.
+/// The changes that turn the next coarser level into a level. They add vertices and triangles, and replace the partner
+/// of a vertex by the vertex itself at some corners.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IndexPatch {
@@ -35,9 +35,9 @@ impl IndexPatch {
         &self.corners
     }
 
-    /// Makes the patch between two lists of triangles, of a level and of the next coarser level. The coarser level
-    /// lacks the vertices of `run`. Returns `None` if the finer list does not become the coarser one by replacing
-    /// corners by partners and dropping triangles.
+    /// Makes the patch from the triangles of a level (`fine`) and the triangles of the next coarser level (`coarse`).
+    /// The coarser level lacks the vertices of `run`. Returns `None` unless replacing corners by partners and dropping
+    /// triangles turns `fine` into `coarse`.
     pub(super) fn between([fine, coarse]: [&[u32]; 2], run: Range<u32>, partners: &[u32]) -> Option<Self> {
         let mut patch = Self { first: run.start, end: run.end, added: Vec::new(), corners: Vec::new() };
         let mut left = coarse.as_chunks::<3>().0.iter().peekable();

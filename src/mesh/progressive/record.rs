@@ -9,14 +9,14 @@ use crate::mesh::simplify::Simplified;
 /// A level of detail to take from a sequence of collapses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChosenLevel {
-    /// Number of leading collapses that make the level. It must exceed the number of the previous level.
+    /// Number of collapses that lead from the mesh to the level. It must exceed the previous level's number.
     pub collapses: usize,
     /// Error of the level: finite, and at least the error of the previous level.
     pub error: f32,
 }
 
-/// The mesh with the chosen levels and partners. Also, for each vertex, the number of the collapse that removed it, or
-/// `u32::MAX` for a vertex that stays.
+/// Returns the mesh with the chosen levels and their partners. The second result has, for each vertex, the number of
+/// the collapse that removed it; `u32::MAX` for a vertex that stays.
 pub(super) fn levelled(
     mesh: &Mesh,
     simplified: &Simplified,

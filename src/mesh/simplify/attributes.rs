@@ -1,12 +1,13 @@
 //! Cost of attribute changes (Hoppe, "New Quadric Metric for Simplifying Meshes with Appearance Attributes",
 //! Visualization 1999). On each triangle, an attribute is a linear function of position.
 //!
-//! Weights are areas. Unlike the sums of positions, the sums of attributes are not divided by their weights: the larger
-//! the area that a wrong normal shades, the more it disturbs (as in meshoptimizer). A mean would count an error on the
-//! smallest triangle as much as one on the largest.
+//! Weights are areas. The sums for attributes are not divided by their weights, unlike the sums for positions: a wrong
+//! normal disturbs more if it shades a larger area (as in meshoptimizer). A mean would count an error on the smallest
+//! triangle as much as one on the largest.
 //!
 //! Sums are in f32, which halves the memory traffic. For attributes that are linear over a flat surface, the cost is
-//! therefore not exactly 0: its square root is up to 3 · 10⁻⁴ of the cost of the attribute change itself.
+//! therefore not exactly 0. Its square root can be 3 · 10⁻⁴ times the square root of the cost that the attribute change
+//! alone would have.
 
 use glam::{DVec3, Vec3, Vec4};
 
@@ -19,8 +20,8 @@ use super::turned::normal;
 const HEAD: usize = 3;
 
 /// Attribute error of each vertex: the sum over triangles and attributes of weight × (g·d + k − s)². Here g is the
-/// gradient of the attribute, and k its accumulated constant difference. The differences of a replacement from the
-/// vertex are d (position) and s (attribute).
+/// gradient of the attribute, and k its accumulated constant difference. A replacement differs from the vertex by d in
+/// position and by s in the attribute.
 pub(crate) struct Attributes<'a> {
     values: &'a [f32],
     stride: usize,
@@ -51,8 +52,8 @@ impl<'a> Own<'a> {
         Self { head: [head[0], head[1], head[2]], sums, values }
     }
 
-    /// Sum of two quadrics: the mean of a point's quadric `shape`, and the part of the attribute error that does not
-    /// depend on the replacement's attributes.
+    /// Sum of two quadrics. The first is a point's quadric `shape`, divided by its weight. The second is the part of
+    /// the attribute error that does not depend on the replacement's attributes.
     #[inline]
     pub(crate) fn with(&self, shape: &Quadric) -> Quadric {
         let [first, second, b] = self.head.map(|four| four.as_dvec4());
@@ -186,7 +187,8 @@ impl<'a> Attributes<'a> {
         Own::new(&self.records[vertex as usize * len..][..len], self.values_of(vertex))
     }
 
-    /// Cost of removing the triangles of the given vertices: their area times the variance of their attributes.
+    /// Cost of removing the triangles of the given vertices: the triangles' area times the variance of the vertices'
+    /// attributes.
     pub(crate) fn lost<I: Iterator<Item = u32>>(&self, vertices: impl Fn() -> I) -> f64 {
         let weight = |vertex: u32| f64::from(self.of(vertex).head[1].w);
         let weights: f64 = vertices().map(weight).sum();
@@ -209,7 +211,8 @@ impl<'a> Attributes<'a> {
         add_moved(to, &Own::new(from, own), values, d.as_vec3());
     }
 
-    /// Sums several vertices at one position into `joint`, as if they were one vertex with the attributes of the first.
+    /// Sums several vertices at one position into `joint`, as if they were one vertex with the first vertex's
+    /// attributes.
     pub(crate) fn join(&self, vertices: impl IntoIterator<Item = u32>, joint: &mut Joint<'a>) {
         joint.record.clear();
         joint.record.resize(HEAD + self.stride, Vec4::ZERO);
@@ -247,7 +250,7 @@ fn add_moved(record: &mut [Vec4], own: &Own<'_>, values: &[f32], d: Vec3) {
 mod tests {
     use super::*;
 
-    /// For a vertex that is replaced twice, the cost equals the sum written out.
+    /// For a vertex that is replaced twice, the cost equals the sum computed directly.
     #[test]
     fn it_sums_squared_differences_from_linear_functions() {
         let positions =
@@ -279,7 +282,7 @@ mod tests {
         let direct = attributes.cost(0, 3, position(3) - position(0));
         assert!(close(direct, off(0, 3)), "{direct}");
         attributes.merge(0, 3, position(3) - position(0));
-        // Before the merges, only vertex 3 belonged to the last two triangles.
+        // Before the merges, vertex 0 belonged to all three triangles, and vertex 3 to the last two.
         let cost = attributes.cost(3, 4, position(4) - position(3));
         let expected = off(0, 4) + 2.0 * off(1, 4);
         assert!(close(cost, expected), "{cost} {expected}");

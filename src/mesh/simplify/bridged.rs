@@ -12,8 +12,8 @@ use super::topology::Topology;
 const MOST: usize = 16;
 
 /// Largest squared distance, in any pose, between the middle of a new edge and the point's triangles before the
-/// collapse; at least `least`. It finds edges that bridge a recess although their point stays near the planes of its
-/// triangles. Points with more than [`MOST`] triangles and new edges on borders are skipped.
+/// collapse; at least `least`. This finds edges that bridge a recess, even if the point stays near the planes of its
+/// triangles. Two cases are skipped: points with more than [`MOST`] triangles, and new edges on borders.
 pub(crate) fn bridged(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2], least: f64) -> f64 {
     let mut worst = least;
     let ring = topology.ring(point);

@@ -6,8 +6,8 @@ use super::points::Points;
 use super::topology::Topology;
 use super::turned::normal;
 
-/// Square of the cost of a collapse, the largest over all poses. It is squared because quadric costs are squares too:
-/// both kinds can then be sorted and converted alike.
+/// Square of the cost of a collapse, the largest over all poses. Quadric costs are also squares, so both kinds can be
+/// sorted and converted alike.
 pub(crate) fn cost(topology: &Topology, points: &Points, [point, neighbor]: [u32; 2]) -> f64 {
     let mut worst = 0.0_f64;
     for pose in 0..points.poses() {
@@ -55,7 +55,8 @@ mod tests {
     }
 
     /// A floor of four squares meets a wall of four. Moving a point along the edge between them costs nothing. Moving
-    /// it away from the edge costs half the length, because the triangles on the other side are turned by 90°.
+    /// it away from the edge costs half of the distance moved, because the triangles on the other side are turned by
+    /// 90°.
     #[test]
     fn edges_are_kept() {
         let mut positions = Vec::new();

@@ -60,11 +60,12 @@ struct Meet {
     other: u32,
 }
 
-/// A vertex of a point, if at least one triangle uses the vertex.
+/// A vertex of a point that is used by at least one triangle.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Wedge {
     pub vertex: u32,
-    /// Index of the wedge's sheet. A sheet is a set of adjacent wedges that are split at this point only.
+    /// Index of the wedge's sheet. A sheet is a set of adjacent wedges. The edges between them are split at this point,
+    /// but not at their far ends.
     sheet: u32,
 }
 
@@ -164,8 +165,8 @@ impl Neighbors {
         }
     }
 
-    /// Removes neighbours into which the point may not collapse. A border point may move only along the border. Every
-    /// sheet must meet the neighbour.
+    /// Removes neighbours into which the point may not collapse. A border point may move only along the border. The
+    /// neighbour must share an edge with every sheet of the point.
     fn keep_allowed(&mut self, topology: &Topology, point: u32) {
         let sheets = self.sheets;
         self.all.retain(|neighbor| {

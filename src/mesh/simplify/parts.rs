@@ -13,12 +13,12 @@ use super::topology::Topology;
 use crate::mesh::nearest::precise_nearest_on_triangle;
 use tree::Tree;
 
-/// Weight of the squared distance between a part and the other parts. The cost of a part is thus half of the distance,
-/// so that it vanishes slightly before collapses that move the surface by the same distance.
+/// Weight of the squared distance between a part and the other parts. In terms of distances, the cost of a part is thus
+/// half of its distance. It vanishes slightly before collapses that move the surface by this distance.
 const FACTOR: f64 = 0.25;
 
-/// A part is measured once a collapse costs this fraction of the part's radius. The part's own collapses mostly cost
-/// less, and a part of few triangles is measured quickly.
+/// A part is first measured when the next collapse costs this fraction of the part's radius. By this time, most of its
+/// own collapses have been made, and its few remaining triangles are measured quickly.
 const FIRST: f64 = 0.25;
 
 /// A set of points that are connected by triangles.
@@ -39,12 +39,11 @@ pub(crate) struct Parts {
     all: Vec<Part>,
     /// One bounding volume tree per pose.
     trees: Vec<Tree>,
-    /// Queue of parts, as pairs of a cost (as bits) and a part. The cost is a lower bound on the cost of the part's
-    /// vanishing.
+    /// Queue of parts. Each entry has a lower bound on the part's cost (as bits), and the part.
     waiting: BinaryHeap<Reverse<(u32, u32)>>,
     /// Number of parts measured so far.
     round: u64,
-    /// Pairs of a point of the measured part and another part: the nearest part, or one that is near enough.
+    /// Pairs of a point of the measured part, and the other part that is nearest to the point or near enough.
     heirs: Vec<[u32; 2]>,
     /// Stack of tree nodes that a search has not visited yet, each with its squared distance.
     open: Vec<(f64, u32)>,
@@ -70,7 +69,8 @@ impl Parts {
     }
 
     /// Takes the part that vanishes at the smallest cost, if this cost is at most `most`. Returns the part's remaining
-    /// points and the cost. `more` gives the cost of losing a part apart from its distance to the others.
+    /// points and the cost. `more` returns the additional cost of losing a part, which does not depend on its distance
+    /// to other parts.
     pub(crate) fn take(
         &mut self,
         points: &Points,
@@ -90,7 +90,8 @@ impl Parts {
             let own = std::mem::take(&mut self.all[part as usize].points);
             let heritage = std::mem::take(&mut self.all[part as usize].heritage);
             let more = more(&own);
-            // Twice the distance that would suffice. A part beyond this distance need not be measured again soon.
+            // Square of twice the distance at which the cost is `most`. A part beyond it is queued with a much larger
+            // cost, so it is not measured again soon.
             let enough = (f64::from(most) - more).max(0.0) * 4.0 / FACTOR;
             let cost = (self.distance(points, topology, [&own, &heritage], enough) * FACTOR + more) as f32;
             let cost = queued.max(cost);
@@ -112,8 +113,8 @@ impl Parts {
         }
     }
 
-    /// Squared largest distance from the points `own` to all remaining parts, in any pose; infinite if no part remains.
-    /// If the distance exceeds `enough`, the result may be any value between both.
+    /// Squared distance from the points `own` to the nearest remaining part: the largest over all points and poses.
+    /// Infinite if no part remains. If the result exceeds `enough`, it may be smaller than the true value.
     fn distance(&mut self, points: &Points, topology: &mut Topology, own: [&[u32]; 2], enough: f64) -> f64 {
         let mut worst = 0.0_f64;
         for pose in 0..points.poses() {
@@ -138,8 +139,8 @@ impl Parts {
         worst
     }
 
-    /// Squared distance to the nearest triangle of all remaining parts, and its part. `known` is the distance to one of
-    /// these parts.
+    /// Squared distance to the nearest triangle of any remaining part, and this part. `known` has the squared distance
+    /// to one of the parts, and this part.
     fn nearest(
         &mut self,
         points: &Points,
@@ -159,7 +160,7 @@ impl Parts {
         (best, of)
     }
 
-    /// Squared distance from `from` to a part, or `best` if the part is not nearer than that.
+    /// Squared distance from `from` to a part, or `best` if `best` is smaller.
     fn nearest_in(
         &mut self,
         points: &Points,

@@ -20,8 +20,8 @@ pub(crate) struct Points {
     are_vertices: bool,
     /// Rigid body of each point, or [`NO_BODY`]. Empty if the mesh has no rigid bodies.
     bodies: Vec<u32>,
-    /// Chart of each vertex: the first vertex of the same point that no seam separates from it. Empty if every vertex
-    /// is its own chart.
+    /// Chart of each vertex, named by the first vertex of the point that is on the same chart. No seam separates
+    /// vertices of one chart. Empty if every vertex is its own chart.
     charts: Vec<u32>,
 }
 
@@ -55,8 +55,8 @@ impl Points {
         }
     }
 
-    /// Adds charts to the points. Only attributes from index `first` on form seams; the vertices of a chart may differ
-    /// in the others.
+    /// Adds charts to the points. Two vertices of a point are on one chart if their attributes from index `first` on
+    /// are equal. Their other attributes may differ.
     pub(crate) fn on_charts(mut self, attributes: &[f32], stride: usize, first: usize) -> Self {
         // Adding 0 turns −0 into +0.
         let held = |vertex: u32| {
@@ -161,7 +161,7 @@ impl Points {
         self.are_vertices
     }
 
-    /// The vertex of a point that has exactly one vertex; otherwise `None`.
+    /// The only vertex of a point; `None` if the point has several vertices.
     #[inline]
     pub(crate) fn only_wedge(&self, point: u32) -> Option<u32> {
         if self.are_vertices {
@@ -245,8 +245,8 @@ fn scale(largest: f64) -> f64 {
     if largest <= 0.0 {
         return 1.0;
     }
-    // The result is 2^(1023 − e) for a number between 2^(e − 1023) and twice that. f32 never reaches the ends of f64's
-    // range.
+    // With e as its exponent bits, `largest` is between 2^(e − 1023) and twice this value. The result is 2^(1023 − e).
+    // It does not overflow, because lengths in f32 never reach the ends of f64's range.
     f64::from_bits((2046 - ((largest.to_bits() >> 52) & 0x7ff)) << 52)
 }
 

@@ -6,8 +6,8 @@ use glam::DVec3;
 ///
 /// The origin is the position of the point that owns the quadric. The planes of the point's triangles pass through this
 /// origin, so the numbers stay small wherever the mesh lies. The quadric is in f64 because costs are squares: a
-/// rounding error of 2⁻⁵² then amounts to 10⁻⁸ of an edge. f32 would give 2 · 10⁻⁴, and so a positive cost on flat
-/// ground.
+/// rounding error of 2⁻⁵² then amounts to 10⁻⁸ of an edge. In f32 it would be 2 · 10⁻⁴ of an edge, and flat ground
+/// would have a cost above 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Quadric {
     /// Upper triangle of A: xx, xy, xz, yy, yz, zz.

@@ -8,14 +8,14 @@ use super::quadric::Quadric;
 use super::topology::{Kind, Topology};
 use super::turned::normal;
 
-/// Weight of the planes across border edges, relative to the planes of triangles. It is 2 because a border edge has one
-/// triangle instead of two. A single spot off the border is detected by `deviation`. With a weight five times as large,
-/// models with many borders keep points on borders that they need elsewhere.
+/// Weight of the planes that hold border edges, relative to the planes of triangles. It is 2 because a border edge has
+/// one triangle instead of two. If a single spot leaves the border, `deviation` detects it. With a weight five times as
+/// large, models with many borders keep too many points there, and lack them elsewhere.
 const BORDER: f64 = 2.0;
 
-/// Weight of the planes across seam edges, for each of the two triangles at an edge; see [`BORDER`] for borders. The
-/// surface continues across a seam, so only the seam's course must be kept. With a larger weight, models of many
-/// hard-edged parts have larger errors.
+/// Weight of the planes that hold seam edges, for each of the two triangles at an edge. It is smaller than [`BORDER`]
+/// because the surface continues across a seam, so only the seam's course must be kept. With a larger weight, models of
+/// many hard-edged parts have larger errors.
 const SEAM: f64 = 0.25;
 
 /// If a point has at least this number of wedges, their attributes are summed once instead of once per neighbour. An
@@ -26,7 +26,7 @@ const JOINED: usize = 8;
 pub(crate) struct Quadrics<'a> {
     /// Quadrics of positions. All poses of point 0 come first.
     shape: Vec<Quadric>,
-    /// For each point, the rigid body that all of its planes lie on, or [`NO_BODY`].
+    /// For each point, the rigid body that all of its planes belong to, or [`NO_BODY`].
     bodies: Vec<u32>,
     attributes: Option<Attributes<'a>>,
     /// Summed attribute errors of the point that was last passed to [`Quadrics::join`].
@@ -143,9 +143,9 @@ impl<'a> Quadrics<'a> {
         }
     }
 
-    /// Attribute cost of a collapse, if each wedge of the point is replaced by its cheapest allowed vertex. The cost is
-    /// a sum of squared differences, weighted by area. If the sum exceeds `most`, a partial sum above `most` may be
-    /// returned.
+    /// Attribute cost of a collapse in which each wedge of the point is replaced by the cheapest vertex that may
+    /// replace it. The cost is a sum of squared differences, weighted by area. If the sum exceeds `most`, a partial sum
+    /// above `most` may be returned.
     pub(crate) fn attribute_cost(
         &self,
         points: &Points,
@@ -214,8 +214,8 @@ impl<'a> Quadrics<'a> {
     }
 }
 
-/// Whether summing the wedges of a point once pays off: the point has many wedges, and at every neighbour with one
-/// vertex, all of them become this vertex.
+/// Whether it pays off to sum the wedges of a point once. This needs many wedges, and all of them must become the same
+/// vertex at every neighbour with one vertex.
 fn is_joined(points: &Points, neighbors: &Neighbors) -> bool {
     neighbors.wedges().len() >= JOINED && !neighbors.is_split() && !points.has_charts()
 }
@@ -247,9 +247,9 @@ impl Cheapest {
 }
 
 /// Adds a triangle's plane to the quadric of each corner, weighted by the square root of the area. For each border or
-/// seam edge, also adds the plane across the edge to both ends, weighted by the edge's length. These planes do not
-/// count in the weight by which sums are divided. Otherwise the ends of borders would seem closer to their triangles
-/// than they are.
+/// seam edge, also adds a plane to both ends, weighted by the edge's length. This plane contains the edge and is
+/// perpendicular to the triangle. It does not count in the weight by which sums are divided. Otherwise the ends of
+/// borders would seem closer to their triangles than they are.
 fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, vertices: [u32; 3]) {
     let of = [points.of(vertices[0]), points.of(vertices[1]), points.of(vertices[2])];
     // This triangle has no area in any pose.
@@ -281,8 +281,8 @@ fn add_triangle(shape: &mut [Quadric], points: &Points, topology: &Topology, ver
     }
 }
 
-/// Weight of the plane across the edge between a triangle's first two points; `None` unless the edge is on a border or
-/// a seam. At a seam, the triangle on the other side has different wedges at both ends. `ends` are this triangle's
+/// Weight of the plane that holds the edge between a triangle's first two points; `None` unless the edge is on a border
+/// or a seam. At a seam, the triangle on the other side has different wedges at both ends. `ends` are this triangle's
 /// vertices at the two ends.
 fn hold(points: &Points, topology: &Topology, of: [u32; 3], ends: [u32; 2]) -> Option<f64> {
     let [from, to, across] = of;

@@ -8,11 +8,11 @@ pub(crate) struct Best {
     pub neighbor: u32,
     /// The squared cost; at least 0.
     pub cost: f32,
-    /// The part of the squared cost that is known before the expensive part is measured.
+    /// The part of the squared cost that is known before distances are measured.
     pub base: f32,
     /// Whether the point has a cheaper collapse that is currently illegal.
     pub is_second: bool,
-    /// Whether `cost` includes the measured part. It stays valid until the point's triangles change.
+    /// Whether `cost` includes the measured distances. These stay valid until the point's triangles change.
     pub is_measured: bool,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct Queue {
     filled: [u64; BUCKETS / 64],
     /// Index in `filled` of the first word whose buckets may have entries.
     first: usize,
-    /// Factor for squared costs. It gives similar meshes the same buckets, whatever their size.
+    /// Factor for squared costs. With it, meshes of the same shape get the same buckets at any size.
     unit: f32,
 }
 
@@ -89,7 +89,7 @@ impl Queue {
         self.first = self.first.min(word);
     }
 
-    /// The next few points of the current bucket, for prefetching. Returned once every few points; empty in between.
+    /// The next few points of the current bucket, for prefetching. Empty except once every `AHEAD` points.
     #[inline]
     pub(crate) fn ahead(&self) -> &[u32] {
         let Some(word) = self.filled.get(self.first).filter(|word| **word != 0) else { return &[] };
@@ -134,8 +134,7 @@ impl Queue {
         }
     }
 
-    /// Bucket of a squared cost. It is taken from the float's bits, because non-negative floats and their bits have the
-    /// same order.
+    /// Bucket of a squared cost: the leading bits of the float. Non-negative floats and their bits have the same order.
     #[inline]
     fn bucket_of(&self, cost: f32) -> u16 {
         ((cost * self.unit).to_bits() >> (31 - BITS)) as u16

@@ -28,8 +28,8 @@ struct Reducer<'a> {
     neighbors: Neighbors,
     /// Parts that may vanish as a whole.
     parts: Parts,
-    /// Points with an illegal collapse that is cheaper than the queued one. It may become legal when triangles around
-    /// the point change.
+    /// Points with an illegal collapse that is cheaper than the queued one. This collapse may become legal when
+    /// triangles around the point change.
     watched: Vec<bool>,
     /// Two sets of marks: for points, and for vertices.
     marks: [Marks; 2],
@@ -44,9 +44,9 @@ struct Reducer<'a> {
 /// Number of collapses between two progress reports.
 const REPORT: usize = 256;
 
-/// Simplifies until a limit of `options` is reached, within one of `distances` after the other. `bodies` has the rigid
-/// body of each vertex ([`Points::on_bodies`]); empty if there are none. `watch` gets the fraction of triangles removed
-/// so far, and may break.
+/// Simplifies within each of `distances` in turn, until a limit of `options` is reached. `bodies` has the rigid body of
+/// each vertex ([`Points::on_bodies`]); empty if there are none. `watch` gets the fraction of triangles removed so far,
+/// and can stop the simplification by returning `Break`.
 pub(crate) fn reduce<B>(
     surface: &Surface<'_>,
     options: &SimplifyOptions,
@@ -210,8 +210,8 @@ impl<'a> Reducer<'a> {
         queue.set(point, best);
     }
 
-    /// Whether the whole cost is measured when a point is queued, before its turn. This is done with attributes:
-    /// measuring then raises nearly every cost, so each point would be queued twice.
+    /// Whether the whole cost is measured before a point is queued. This is done if there are attributes. Measuring
+    /// raises nearly every attribute cost, so a point measured later would have to be queued again.
     fn is_measured_early(&self) -> bool {
         self.quadrics.as_ref().is_some_and(Quadrics::has_attributes)
     }
@@ -259,8 +259,8 @@ impl<'a> Reducer<'a> {
     }
 
     /// Whether the best collapse of a point must be recomputed. The point's triangles must be up to date. If no other
-    /// point was merged into this point, the costs of its other collapses have not changed. A new neighbour is hardly
-    /// ever cheaper than the best old one.
+    /// point was merged into this point, the costs of collapsing into its old neighbours have not changed. A new
+    /// neighbour is hardly ever cheaper than the best old one.
     fn is_outdated(&self, point: u32, best: &Best, change: Change) -> bool {
         match change {
             Change::None => false,
@@ -313,9 +313,9 @@ impl<'a> Reducer<'a> {
     }
 
     /// Reconsiders the neighbours of changed points. The normals of changed points are new, and so are the triangles to
-    /// which samples may be assigned. A refused collapse of a neighbour may therefore be legal now. For points whose
-    /// own triangles are unchanged, no other collapse can become legal: their triangles turn as before, and the set of
-    /// common neighbours of an edge can only grow.
+    /// which samples may be assigned. A refused collapse of a neighbour may therefore be legal now. There is no other
+    /// reason to reconsider a point whose own triangles are unchanged: its triangles turn as before, and an edge can
+    /// only gain common neighbours.
     fn wake(&mut self, queue: &mut Queue, changed: &[u32]) {
         let mut around = Vec::new();
         changed.iter().for_each(|point| self.topology.refresh(*point));
@@ -341,7 +341,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Lists the vertices of a point that triangles use, each with its replacement at the neighbour.
+    /// Lists in `moved` the vertices of a point that are used by triangles, each with its replacement at the neighbour.
     fn replace(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         if let [Some(vertex), Some(target)] = [point, neighbor].map(|point| self.points.only_wedge(point)) {
             moved.push([vertex, target]);

@@ -32,7 +32,7 @@ pub(crate) enum Kind {
     Interior,
     /// Triangles form a fan from one border edge to another.
     Border,
-    /// The point has no triangles, or its neighbourhood is of another kind. The point is never removed.
+    /// The point has no triangles, or they are arranged in another way. The point is never removed.
     Locked,
 }
 
@@ -76,7 +76,7 @@ fn is_round(ring: &[[u32; 2]]) -> bool {
     false
 }
 
-/// The triangles of the mesh that have three different points, listed by point. All others count as removed.
+/// The triangles of the mesh that have three different points, listed by point. Other triangles count as removed.
 ///
 /// A collapse updates only the lists of its two points. The lists of surrounding points still name the removed point
 /// until [`Self::refresh`] updates them. This pays off because most lists change several times before they are read.
@@ -149,8 +149,8 @@ impl Topology {
         topology
     }
 
-    /// The kind of a point. A point is manifold if two conditions hold. Each neighbour begins at most one of its
-    /// triangles and ends at most one. Following the triangles from one to the next visits all of them.
+    /// The kind of a point. A point is manifold under two conditions. First, each neighbour is `next` in at most one
+    /// triangle and `last` in at most one. Second, following the triangles from one to the next visits all of them.
     fn kind_of(&self, point: u32) -> Kind {
         let ring = self.ring(point);
         if is_round(ring) {

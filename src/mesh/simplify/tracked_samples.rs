@@ -7,22 +7,22 @@ use super::points::Points;
 use super::topology::Topology;
 use crate::mesh::nearest::nearest_on_triangle;
 
-/// For each point, the number of samples that are tested first.
+/// Number of samples per point that are tested first.
 const WITNESSES: usize = 4;
 
 /// Marks a missing sample or triangle.
 const NONE: u32 = u32::MAX;
 
-/// Samples of the mesh. Each sample is assigned to a remaining triangle, which is within the allowed distance in every
-/// pose.
+/// Samples of the mesh. Each sample is assigned to a remaining triangle, and is within the allowed distance of it in
+/// every pose.
 pub(crate) struct TrackedSamples {
-    /// For each triangle, the samples assigned to it. A number below the number of points is a removed point, a larger
-    /// number is a midpoint.
+    /// For each triangle, the samples assigned to it. An entry below the number of points is a removed point. Any other
+    /// entry is a midpoint.
     samples: Vec<Vec<u32>>,
     /// For each sample, the triangle to which it is assigned.
     homes: Vec<u32>,
-    /// For each point, the samples that last forbade one of its collapses. Most collapses are tested repeatedly, and
-    /// one sample is usually enough to refuse.
+    /// For each point, the samples because of which its collapses were last refused. Most collapses are tested
+    /// repeatedly, and one sample is usually enough to refuse a collapse.
     witnesses: Vec<[u32; WITNESSES]>,
     middles: Middles,
     /// Square of the largest allowed distance, in scaled units.
@@ -34,7 +34,7 @@ pub(crate) struct TrackedSamples {
     faces: Vec<Face>,
     /// Number of triangles that the last tested collapse changes.
     changed: usize,
-    /// Midpoints of the mesh's triangles that may lie below the changed triangles.
+    /// Triangles of the original mesh that may lie below the changed triangles. Each is given by one of its midpoints.
     below: Vec<u32>,
 }
 
@@ -54,7 +54,7 @@ struct Verdict {
     neighbor: u32,
     /// Number of collapses made before the test.
     collapses: u32,
-    /// Lower bound on the square of the distance limit with which the collapse would pass; 0 if it has passed.
+    /// Lower bound on the square of the distance limit at which the collapse would pass; 0 if it has passed.
     needed: f32,
 }
 
@@ -154,7 +154,7 @@ struct Face {
 
 impl Face {
     fn new(points: &Points, number: u32, corners: [u32; 3]) -> Self {
-        /// Squared sine of a triangle's angle. If it is smaller, the normal is too inexact.
+        /// Smallest squared sine of a triangle's angle at which the normal is exact enough.
         const LEAST: f32 = 1e-4;
         let corners = Corners::new(points, corners);
         let [a, b, c] = corners.first;
@@ -254,9 +254,9 @@ impl TrackedSamples {
         self.most = distance * distance;
     }
 
-    /// Tests the collapse of a point into its neighbour. It passes under two conditions. The point, and each sample on
-    /// the changed triangles, must be within the limit of a triangle that one of the two points has afterwards. The
-    /// midpoints of the changed triangles and of their edges must be within the limit of the original mesh.
+    /// Tests the collapse of a point into its neighbour. The collapse passes under two conditions. First, the point and
+    /// each sample on the changed triangles must be within the limit of some triangle around the merged point. Second,
+    /// the midpoints of the changed triangles and of their edges must be within the limit of the original mesh.
     pub(crate) fn keeps_near(
         &mut self,
         topology: &Topology,
@@ -276,8 +276,8 @@ impl TrackedSamples {
         needed == 0.0
     }
 
-    /// As [`Self::keeps_near`], for a collapse whose point itself has passed. Returns a lower bound on the square of
-    /// the distance limit with which the collapse would pass, or 0 if it passes now.
+    /// The remaining tests of [`Self::keeps_near`], after the collapsing point itself has passed. Returns a lower bound
+    /// on the square of the distance limit at which the collapse would pass, or 0 if it passes now.
     fn needed_by_all(&mut self, topology: &Topology, points: &Points, both: [u32; 2]) -> f32 {
         let [point, neighbor] = both;
         self.looked_at = None;
@@ -340,7 +340,7 @@ impl TrackedSamples {
         nearest_off(points, &self.place(points, sample), self.faces.iter())
     }
 
-    /// Lists the triangles that the two points have after a collapse in `faces`, the changed ones first.
+    /// Lists in `faces` the triangles of both points as they are after a collapse, the changed triangles first.
     fn list_faces(&mut self, topology: &Topology, points: &Points, point: u32, neighbor: u32) {
         self.faces.clear();
         for (around, other) in [(point, neighbor), (neighbor, point)] {
@@ -354,14 +354,15 @@ impl TrackedSamples {
         }
     }
 
-    /// Lists in `below` the midpoints of the mesh that are assigned to triangles around two points.
+    /// Lists in `below` the triangles of the original mesh whose midpoints are assigned to triangles around two points.
+    /// Each is given by one of its midpoints.
     fn list_below(&mut self, topology: &Topology, points: &Points, both: [u32; 2]) {
         self.below.clear();
         let mut last = NONE;
         for triangle in both.iter().flat_map(|point| topology.around(*point)) {
             for sample in &self.samples[*triangle as usize] {
                 let Some(middle) = (*sample as usize).checked_sub(points.len()) else { continue };
-                // The midpoints of a triangle and of its edges are mostly consecutive.
+                // Midpoints of one triangle are mostly consecutive, so this skips most duplicates.
                 let of = self.middles.triangles[middle].number;
                 if of != last {
                     self.below.push(middle as u32);
@@ -371,9 +372,9 @@ impl TrackedSamples {
         }
     }
 
-    /// A triangle of the original mesh that is within the limit of the midpoint of `ends` in all poses, as an index in
-    /// `below`: `likely` if it qualifies, otherwise the first. If there is none, the error is the square of the
-    /// smallest distance.
+    /// Finds a triangle of the original mesh that is within the limit of the midpoint of `ends` in all poses. Returns
+    /// its index in `below`: `likely` if that triangle qualifies, otherwise the first that does. If there is none, the
+    /// error is the square of the smallest distance.
     fn behind(&self, points: &Points, ends: &[u32], likely: usize) -> Result<usize, f32> {
         let place = Place::new(points.common_body(ends), |pose| middle(points, ends, pose));
         let limits = [self.most.sqrt(), self.most];
@@ -396,8 +397,8 @@ impl TrackedSamples {
         })
     }
 
-    /// A triangle after the collapse that is within the limit of a sample in all poses, as an index in `faces`:
-    /// `likely` if it qualifies, otherwise the first. `None` if there is none.
+    /// Finds a triangle after the collapse that is within the limit of a sample in all poses. Returns its index in
+    /// `faces`: `likely` if that triangle qualifies, otherwise the first that does. `None` if there is none.
     fn near(&self, points: &Points, sample: u32, likely: usize) -> Option<usize> {
         let (place, limits) = (self.place(points, sample), [self.most.sqrt(), self.most]);
         let is_near = |face: &Face| face.is_near(points, &place, limits);
@@ -407,9 +408,9 @@ impl TrackedSamples {
         self.faces.iter().position(is_near)
     }
 
-    /// The triangle after the collapse that is nearest to a sample, as an index in `faces`; `None` if it is beyond the
-    /// limit. The distance is the largest over all poses. `likely` is tested first, so that most other triangles can be
-    /// rejected quickly.
+    /// Finds the triangle after the collapse that is nearest to a sample. Returns its index in `faces`; `None` if it is
+    /// beyond the limit. The distance is the largest over all poses. `likely` is tested first, so that most other
+    /// triangles can be rejected quickly.
     fn nearest(&self, points: &Points, sample: u32, likely: usize) -> Option<usize> {
         let place = self.place(points, sample);
         let off = |face: &Face, most| off(points, &face.corners, &place, most);
@@ -491,7 +492,7 @@ mod tests {
         indices.chunks_exact(3).flat_map(of).collect()
     }
 
-    /// Largest distance between samples of one surface and the other surface, in both directions and in all poses.
+    /// Largest distance from the samples of either surface to the other surface, over all poses.
     fn off(poses: &[Vec<[f32; 3]>], mesh: &[u32], level: &[u32]) -> f32 {
         let one_way = |pose: &Vec<[f32; 3]>, from: &[u32], to: &[u32]| {
             let distance = |position: Vec3| {
@@ -527,7 +528,7 @@ mod tests {
             last = triangles.len();
         }
         assert!(6 * last < indices.len(), "{last} indices left");
-        // Without a distance limit, more triangles remain at this distance.
+        // Without a distance limit, a level that stays within this distance has more triangles.
         let plain = simplify(&surface, &SimplifyOptions::default()).expect("valid");
         assert!(plain.collapses().iter().all(|collapse| collapse.distance == f32::INFINITY));
         let within = |count| off(&poses, &indices, &level(&plain, count)) <= 0.02;

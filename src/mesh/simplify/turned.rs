@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::points::Points;
 use super::topology::Topology;
 
-/// Squared sine of the angle between two edges. At or below this value, a triangle counts as having no area.
-/// Coordinates are rounded to 2⁻²⁴ of their size, so smaller angles are noise.
+/// Limit of the squared sine of the angle between two edges. At or below this limit, a triangle counts as having no
+/// area. Coordinates are rounded to 2⁻²⁴ of their size, so smaller angles are noise.
 const NO_AREA: f64 = 1e-12;
 
 /// Error for a triangle without area.
@@ -33,9 +33,10 @@ fn is_flat(square: f64, [first, second]: [DVec3; 2]) -> bool {
 const LEAST: f64 = 0.0625;
 
 /// Largest squared distance, over all poses, between a point and the planes of its triangles after a collapse. For a
-/// border point, the distance from the new border counts too. `None` if the collapse turns a triangle by more than 75°
+/// border point, the distance from the new border also counts. `None` if the collapse turns a triangle by more than 75°
 /// or removes its area, in any pose. Triangles that had no area before may turn. `first` is the number of the triangle
-/// to test first. It is set to the triangle that turns, which mostly turns for the next neighbour as well.
+/// to test first. If a triangle turns, `first` is set to its number, because it mostly turns for the next neighbour as
+/// well.
 pub(crate) fn deviation(
     topology: &Topology,
     points: &Points,

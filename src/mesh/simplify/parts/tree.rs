@@ -63,7 +63,7 @@ impl Tree {
         }
     }
 
-    /// Starts a search from the position `from`: pushes the boxes to visit onto `open`, the nearest last.
+    /// Starts a search from the position `from`. `open` becomes the stack of boxes to visit, with the nearest on top.
     pub(super) fn start(&self, from: DVec3, open: &mut Vec<(f64, u32)>) {
         open.clear();
         self.open(0, from, open);

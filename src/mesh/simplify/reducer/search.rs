@@ -8,22 +8,24 @@ use super::super::topology::Kind;
 use super::super::turned::deviation;
 use super::{Cost, Reducer, Stopped};
 
-/// Weight of the squared distance between a point and the planes of its triangles after a collapse. This maximum
-/// complements the mean of squares, which hides a single spot among many triangles. Found by trial on twelve meshes,
-/// eight of them third-party. With half the weight, the largest errors grow on models of many hard-edged parts.
+/// Weight of the largest squared distance between a point and the planes of its triangles after a collapse. The cost is
+/// at least this term, because a mean of squares over many triangles hides a large error at a single spot. Found by
+/// trial on twelve meshes, eight of them third-party. With half the weight, the largest errors grow on models of many
+/// hard-edged parts.
 const DEVIATION: f64 = 1.0 / 8.0;
 
-/// Weight like [`DEVIATION`], but used with attributes and added to their cost. Attribute costs are mostly larger, so
-/// that taking the maximum would miss a spot that is off. Found by trial: a larger weight degrades normals.
+/// Weight of the squared distance of [`DEVIATION`] if there are attributes. This term is added to the cost: attribute
+/// costs are mostly larger, so the maximum of both would hide a large error at a single spot. Found by trial: a larger
+/// weight degrades normals.
 const BESIDE_ATTRIBUTES: f64 = 0.4;
 
-/// Weight like [`BESIDE_ATTRIBUTES`], but for the squared distance between the middle of a new edge and the previous
-/// triangles. Found by trial on the same meshes: with half the weight, the largest errors grow on some of them. Without
-/// attributes, it gains nothing.
+/// Weight of the squared distance between the middle of a new edge and the previous triangles. It is used like
+/// [`BESIDE_ATTRIBUTES`]. Found by trial on the same meshes: with half the weight, the largest errors grow on some of
+/// them. Without attributes, this term gains nothing.
 const BRIDGED: f64 = 1.6;
 
-/// Number of a point's collapses, cheapest first, that are tested against limited distances. If these are refused,
-/// others hardly ever pass. A pole has hundreds of collapses.
+/// If distances are limited, at most this number of a point's collapses are tested, cheapest first. If all of them are
+/// refused, others hardly ever pass. The pole of a sphere has hundreds of collapses.
 const TESTED: usize = 12;
 
 /// A candidate collapse that is not the point's cheapest.
@@ -40,7 +42,8 @@ impl Reducer<'_> {
         self.find_plain(point).or_else(|| self.find_any(point))
     }
 
-    /// As [`Self::find`], but fast. `None` for a point on a border, and for a point or neighbour with several vertices.
+    /// Fast version of [`Self::find`]. `None` if the point is on a border, or if the point or a neighbour has several
+    /// vertices.
     fn find_plain(&self, point: u32) -> Option<Best> {
         let quadrics = self.quadrics.as_ref().filter(|_| self.topology.kind(point) == Kind::Interior)?;
         let vertex = self.points.only_wedge(point)?;
@@ -124,7 +127,8 @@ impl Reducer<'_> {
     }
 
     /// Cheapest collapse of a point that is currently legal. If distances are limited, testing a collapse takes longer
-    /// than computing its cost. Costs are therefore listed once, and tested from the cheapest on.
+    /// than computing its cost. Costs are therefore listed once, and the collapses are tested in ascending order of
+    /// cost.
     pub(super) fn find_legal(&mut self, point: u32) -> Option<Best> {
         if self.tracked_samples.is_none() {
             return self.find_turning_none(point);
@@ -174,8 +178,8 @@ impl Reducer<'_> {
         best
     }
 
-    /// Cost of a collapse into one of the neighbours collected last. If the cost exceeds `most`, a partial cost above
-    /// `most` may be returned.
+    /// Cost of a collapse into one of the neighbours in `self.neighbors`. If the cost exceeds `most`, a partial cost
+    /// above `most` may be returned.
     fn cost(&self, point: u32, neighbor: &Neighbor, most: f32) -> f32 {
         self.cost_of(&self.neighbors, point, neighbor, most)
     }
@@ -200,7 +204,7 @@ impl Reducer<'_> {
         if self.is_allowed(point, best.neighbor) { self.measure(point, best) } else { None }
     }
 
-    /// Whether a collapse keeps the topology and the limited distances of samples. For [`Cost::Melax`] with
+    /// Whether a collapse keeps the topology, and keeps all samples within the distance limit. For [`Cost::Melax`] with
     /// `check_normals`, the normals must also be similar.
     pub(super) fn is_allowed(&mut self, point: u32, neighbor: u32) -> bool {
         self.topology.refresh(neighbor);
@@ -217,8 +221,9 @@ impl Reducer<'_> {
             })
     }
 
-    /// The collapse with its complete cost: including the point's distance from the planes of its triangles and, with
-    /// attributes, the distance of new edges from the previous triangles. `None` if the collapse turns a triangle.
+    /// The collapse with its complete cost. The cost includes the point's distance from the planes of its triangles.
+    /// With attributes, it also includes the distance of new edges from the previous triangles. `None` if the collapse
+    /// turns a triangle too far.
     pub(super) fn measure(&self, point: u32, best: Best) -> Option<Best> {
         deviation(&self.topology, &self.points, [point, best.neighbor], &mut 0)
             .map(|deviation| self.with_deviation(point, best, deviation, f32::INFINITY))

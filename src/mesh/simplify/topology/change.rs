@@ -81,7 +81,7 @@ impl Topology {
         self.triangles -= corners / 3;
     }
 
-    /// Removes those triangles from a point's list that contain the point `other`.
+    /// Removes the triangles that contain the point `other` from a point's list.
     fn remove(&mut self, point: u32, other: u32) {
         let span = &mut self.spans[point as usize];
         let mut at = span.start;

@@ -4,7 +4,8 @@ use super::{Kind, Topology};
 
 impl Topology {
     /// Whether a collapse keeps the topology (the link condition). Every common neighbour of the two points must lie on
-    /// a triangle that both points share. No two common neighbours may share a triangle with each of the two points.
+    /// a triangle that both points share. Two common neighbours must not form a triangle with the first point and
+    /// another triangle with the second.
     pub(crate) fn keeps_topology(&self, point: u32, neighbor: u32) -> bool {
         let (ring, far) = (self.ring(point), self.ring(neighbor));
         if [point, neighbor].iter().all(|point| self.kind(*point) == Kind::Interior) {
