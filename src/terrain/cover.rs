@@ -17,7 +17,7 @@ const TILE_ONE: f64 = 4_194_304.0;
 /// Converts a zone to the form that shaders use.
 pub fn zone_of(zone: &Zone) -> ShaderZone {
     let Slope { min, max, fade } = zone.slope;
-    // Slopes are tangents of half their angle. A range that begins at 0° or ends at 90° has no transition at that end.
+    // A slope is stored as the tangent of half its angle. A range that begins at 0° or ends at 90° has no transition at that end.
     let half = |degrees: f64| libm::tan(degrees.clamp(0.0, 90.0).to_radians() / 2.0);
     let line = |from: f64, to: f64| {
         let [zero, one] = [half(from), half(to)];
@@ -36,7 +36,7 @@ pub fn zone_of(zone: &Zone) -> ShaderZone {
 /// Ground cover of a colour map: zones and the texels of their textures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cover {
-    /// Zones, 1 to 32. The texels of a zone are `texels[first..]`, 4^`edge_log2` of them.
+    /// Zones, 1 to 32. A zone has 4^`edge_log2` texels, which start at `texels[first]`.
     pub zones: Vec<MapZone>,
     /// Linear texels of all zones, row by row: red, green, blue, and height in the texture; 16 bits each, 0 to 65535.
     pub texels: Vec<[u16; 4]>,
@@ -51,8 +51,8 @@ pub struct Cover {
 }
 
 impl Cover {
-    /// Creates the cover of a configuration, with one texture per zone. Of each texture it takes the mip level whose texel size
-    /// is nearest to the distance between samples.
+    /// Creates the cover of a configuration, with one texture per zone. It takes one mip level of each texture: the level whose
+    /// texel size is nearest to the distance between samples.
     ///
     /// # Errors
     /// [`InputError`] when the number of textures is not the number of zones, and as [`TerrainConfig::validate`].
@@ -162,8 +162,8 @@ fn level_of(between: f64) -> u32 {
         .unwrap_or(TEXTURE_SIZE.ilog2())
 }
 
-/// Converts an sRGB texel with 8 bits per channel to linear light with 16 bits. The fourth channel is the height and only gets
-/// wider.
+/// Converts an sRGB texel with 8 bits per channel to linear light with 16 bits. The fourth channel is the height, which is only
+/// widened to 16 bits.
 fn linear(texel: &[u8]) -> [u16; 4] {
     let color = |channel: usize| (srgb::linear(texel[channel]) * 65_535.0 + 0.5) as u16;
     [color(0), color(1), color(2), u16::from(texel[3]) * 257]

@@ -1,4 +1,4 @@
-//! Helpers for heights that other programs use: hashes, and copies of fields without their margins.
+//! Helpers for exporting heights to other programs: hashes, and copies of fields without their margins.
 
 use crate::hash;
 

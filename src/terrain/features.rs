@@ -81,8 +81,8 @@ impl FeatureFile {
 pub struct Features {
     /// How an injected height changes the computed height of its point.
     pub mode: FeatureMode,
-    // Points by (Y, X) in world coordinates, per world. `seamless` terrain has a single world, (0, 0). In the other border modes
-    // each patch is its own world, and world coordinates start at the patch.
+    // For each world: heights of the points by (Y, X) in world coordinates. `seamless` terrain has a single world, (0, 0). In the
+    // other border modes each patch is its own world, and world coordinates start at the patch.
     worlds: BTreeMap<[i32; 2], BTreeMap<(i64, i64), i32>>,
 }
 
@@ -164,7 +164,7 @@ impl Features {
             .unwrap_or(0)
     }
 
-    /// Injected points on a square lattice, as (column, row, height), sorted by row and then column. The lattice is in world
+    /// Injected points on a square lattice, as (column, row, height), sorted by row and then column. The lattice is in the
     /// coordinates of the world `world`. `new_only` excludes points that also lie on the lattice with twice the spacing.
     pub(crate) fn on_lattice(
         &self,

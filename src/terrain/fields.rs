@@ -102,7 +102,7 @@ impl Fields {
         (self.inner_width(crop) as usize).pow(2) * self.count as usize
     }
 
-    /// Checks that the fields are larger than a rim of `crop` samples on every side, and that the buffer holds all fields.
+    /// Checks that samples remain after removal of `crop` samples on every side, and that the buffer holds all fields.
     ///
     /// # Errors
     /// [`InputError`] that names `field`, the caller's name for these fields.

@@ -1,8 +1,8 @@
 //! Complete fields on the device: all kernels in the order of a recipe. This is the GPU counterpart of [`crate::terrain::field`].
 //!
-//! The buffers never hold more than two `i32` per sample of the windows, results included; with hydraulic erosion, ten. Windows
-//! are patches with the samples that erosion needs around them. Each stage frees the data that the next stage does not read. An
-//! index of features takes two more bits per sample and level.
+//! A window is a patch with the samples around it that erosion needs. Together, the buffers never hold more than two `i32` per
+//! sample of the windows, or ten with hydraulic erosion. These numbers include the results. Each stage frees the data that the
+//! next stage does not read. An index of features takes two more bits per sample and level.
 
 mod erosion;
 
@@ -34,7 +34,7 @@ pub struct Generator {
     pad: PadPass,
     despike: DespikePass,
     thermal: ThermalPass,
-    /// `None` for recipes without hydraulic erosion: the pipeline is then not compiled.
+    /// `None` for recipes without hydraulic erosion, for which this pipeline is not compiled.
     hydraulic: Option<HydraulicPass>,
 }
 
@@ -79,7 +79,7 @@ impl Generator {
     /// Generates the final heights of `patches`, with `margin` samples around each. The result is split into parts that each fit
     /// one storage binding. After each part, `progress` is called with the part's number of patches. Waits for the device.
     ///
-    /// Apart from features, at most two `i32` per sample of the windows are allocated at once; with hydraulic erosion, ten.
+    /// Apart from features, at most two `i32` per sample of the windows are allocated at once, or ten with hydraulic erosion.
     ///
     /// # Errors
     /// [`crate::InputError`] for patches out of bounds; [`GpuError`].
@@ -155,7 +155,7 @@ impl Generator {
         Ok(fields)
     }
 
-    /// Number of features that influence a window: those within the window's base lattice and one point around it.
+    /// Number of features that influence a window: the features within the window's base lattice and one point around it.
     fn seen_features(&self, window: Window) -> usize {
         let (config, features) = (&self.recipe.config, &self.recipe.features);
         if features.is_empty() {
@@ -164,7 +164,7 @@ impl Generator {
         let spacing = config.sample_spacing();
         let finer = 1 << config.levels();
         let base = window.levels(config)[0];
-        // The region is one cell larger than the windows need, whatever their position relative to the base lattice.
+        // Wherever a window lies relative to the base lattice, this region is one cell larger than the window needs.
         let origin = base.map(|span| (span.first - 2) * finer * spacing);
         let width = base.map(|span| (span.width() as i64 + 4) * finer).into_iter().max().unwrap_or(0) as u32;
         features.on_lattice([0, 0], Lattice { origin, width, spacing }, false).len()

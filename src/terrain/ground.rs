@@ -89,7 +89,7 @@ impl Ground {
         self.point_from([0, 0], x, z)
     }
 
-    /// Height and normal of the ground at a position relative to the first sample of patch `origin`, otherwise as
+    /// Height and normal of the ground at a position relative to the first sample of patch `origin`. Everything else is as in
     /// [`Ground::point_at`]. A viewer far from patch (0, 0) should choose a nearby origin: positions near 0 are precise, however
     /// far away the origin is.
     pub fn point_from(&self, origin: [i32; 2], x: f64, z: f64) -> Option<GroundPoint> {
@@ -106,8 +106,8 @@ impl Ground {
         .next()
     }
 
-    /// Cells along one axis that contain a position. A position on the edge between two patches lies in two cells: first the one
-    /// after the edge, then the one before.
+    /// Cells along one axis that contain a position. A position on the edge between two patches lies in two cells: first the cell
+    /// after the edge, then the cell before it.
     fn cells(&self, origin: i32, position: f64) -> Option<[Option<Cell>; 2]> {
         let edge = i64::from(self.size) - 1;
         let (sample, fraction) = sample_and_fraction(position / self.spacing)?;

@@ -59,8 +59,8 @@ pub(crate) struct Injected {
 }
 
 impl Injected {
-    /// Finds the features on a window's lattice extended by `rim` points on every side. The extension is needed because points
-    /// outside the window also influence points inside. `new_only` excludes points of the coarser lattice.
+    /// Finds the features on a window's lattice, which is first extended by `rim` points on every side. The extension is needed
+    /// because features outside the window also influence points inside. `new_only` excludes points of the coarser lattice.
     pub(crate) fn new(
         features: &Features,
         spans: [Span; 2],
@@ -73,7 +73,8 @@ impl Injected {
         Self { points: features.on_lattice([0, 0], lattice, new_only), origin }
     }
 
-    /// Injects features into `heights`. `heights[i]` is the height of point (x + i·step, y), in units of the lattice's spacing.
+    /// Injects features into `heights`. `heights[i]` belongs to the lattice point (x + i·step, y). Coordinates are in units of
+    /// the lattice's spacing.
     pub(crate) fn inject_row(&self, features: &Features, y: i64, x: i64, step: i64, heights: &mut [i32]) {
         let row = (y - self.origin[1]) as u32;
         let start = self.points.partition_point(|point| point.1 < row);

@@ -31,7 +31,7 @@ pub(in crate::terrain) struct LevelBuffers<'a> {
 }
 
 impl LevelPass {
-    /// Prepares the generation of `windows`. The configuration must be valid, and its border mode must be the one of this kernel.
+    /// Prepares the generation of `windows`. The configuration must be valid, and its border mode must match this kernel.
     ///
     /// # Errors
     /// [`InputError`] for an apron out of bounds, and for buffers that are too short; [`GpuError`].
@@ -73,7 +73,8 @@ impl LevelPass {
                 features: &features,
             };
             let groups = (self.bind)(gpu, &self.kernel, buffers)?;
-            // One thread per coarse point. The extra thread per row is needed because a window may start anywhere in a cell.
+            // One thread per coarse point. Each row and column has one extra thread, because a window may start anywhere in a
+            // cell.
             let edge = params.fine_width / 2 + 1;
             steps.push(Step::covering(&self.kernel, groups, [edge, edge, count]));
             origins.push(starts);
@@ -83,8 +84,8 @@ impl LevelPass {
     }
 }
 
-/// Points along an edge of a window at every level, starting with the base lattice. They are enough for windows at any position
-/// relative to the coarse lattices.
+/// Numbers of points along an edge of a window, one per level, starting with the base lattice. The numbers suffice for windows at
+/// any position relative to the coarse lattices.
 fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
     let halo = match (config.border, config.interpolation) {
         (Border::Seamless, HeightInterpolation::Linear) => 3,
@@ -99,7 +100,8 @@ fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
     widths
 }
 
-/// Number of points around a window whose features influence the window. Grids of a feature index already include one of them.
+/// Width in points of the rim around a window in which features influence the window. A grid of a feature index already includes
+/// one point of this rim.
 fn rim(config: &TerrainConfig) -> u32 {
     match config.interpolation {
         HeightInterpolation::Linear => 1,
@@ -114,7 +116,7 @@ fn points(width: u32, count: u32) -> usize {
 /// Buffers for the generation of a batch of windows.
 #[derive(Debug, Clone, Copy)]
 pub struct HeightBuffers<'a> {
-    /// Written: the heights, one window after the other; at least [`HeightJob::output_points`] of them.
+    /// Written: the heights, one window after the other. The buffer must hold [`HeightJob::output_points`] heights or more.
     pub output: &'a Buffer<i32>,
     /// Scratch memory that was made for the same configuration and windows.
     pub scratch: &'a HeightScratch,
@@ -140,7 +142,7 @@ impl HeightScratch {
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
     }
 
-    /// Number of points that each of the two buffers must hold: its largest level. With small patches, coarse levels can be wider
+    /// Number of points in the largest level that each of the two buffers stores. With small patches, coarse levels can be wider
     /// than fine ones. The base lattice and the output have their own buffers.
     fn points(widths: &[u32], count: u32) -> [usize; 2] {
         let mut most = [0; 2];

@@ -6,8 +6,8 @@ use std::io::{self, Write};
 use crate::asset::obj::{ObjWriter, Object};
 use crate::terrain::config::HEIGHT_ONE;
 
-/// Fixed-point value of 1 for positions within a cell: they are multiples of 2⁻³⁰ of the distance between samples. The product of
-/// such a position and any height fits `i64`.
+/// Fixed-point value of one cell edge. Positions within a cell are multiples of 2⁻³⁰ of the distance between samples. The product
+/// of such a position and any height fits `i64`.
 pub(crate) const FRACTION_ONE: i64 = 1 << 30;
 
 /// Height and normal of the drawn ground at one position.
@@ -57,8 +57,8 @@ impl HeightField {
     pub(crate) fn triangle(&self, [column, row]: [usize; 2], [u, v]: [i64; 2]) -> GroundPoint {
         let corner = |dx: usize, dy: usize| i64::from(self.heights[(row + dy) * self.size + column + dx]);
         let (east, south) = (corner(1, 0), corner(0, 1));
-        // Barycentric weights are integers with a constant sum. Heights are therefore exact, and equal on an edge of two
-        // triangles.
+        // Barycentric weights are integers with a constant sum. Heights are therefore exact, and adjacent triangles agree on
+        // their common edge.
         let beyond = u + v - FRACTION_ONE;
         let (sum, rise) = if beyond <= 0 {
             let first = corner(0, 0);

@@ -32,7 +32,7 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// Creates a recipe without features, despiking and erosion.
+    /// Creates a recipe without features, despiking or erosion.
     pub fn new(config: TerrainConfig) -> Self {
         Self {
             config,
@@ -69,8 +69,8 @@ impl Recipe {
         .fold(margin, u32::saturating_add)
     }
 
-    /// Positions (column, row) of the injected points in each patch's window, which despiking leaves unchanged. Without despiking
-    /// the lists are empty.
+    /// Positions (column, row) of the injected points in each patch's window. Despiking leaves these points unchanged. Without
+    /// despiking the lists are empty.
     pub(crate) fn injected(&self, patches: &[[i32; 2]], apron: u32) -> Vec<Vec<(u32, u32)>> {
         match self.despike {
             Some(_) => self.features.in_windows(&self.config, patches, apron),

@@ -13,7 +13,7 @@ use crate::Error;
 use crate::srgb;
 use crate::terrain::config::{BuiltIn, Zone, ZoneTexture};
 
-/// Number of texels along an edge of a zone texture. Images of other sizes are resized to it.
+/// Number of texels along an edge of a zone texture. Images of other sizes are resized to this size.
 pub const TEXTURE_SIZE: u32 = 512;
 
 /// A square zone texture with all mip levels. Colours are sRGB; the fourth channel is a height map from 0 (deep) to 255 (high).
@@ -90,7 +90,7 @@ impl TerrainTexture {
     }
 }
 
-/// Adds to the error of an unreadable texture file the names of the built-in textures that the zone could use instead.
+/// Extends the error of an unreadable texture file with the names of the built-in textures that the zone could use instead.
 fn unreadable(zone: usize, error: Error) -> Error {
     match error {
         Error::File { path, reason } => {

@@ -1,4 +1,5 @@
-//! Windows onto the plane of samples. A window is a patch with the samples around it; it has a range of points at every level.
+//! Windows onto the plane of samples. A window is a patch with the samples around it. At every level of subdivision, a window
+//! covers a range of lattice points.
 
 use std::iter::successors;
 
@@ -8,7 +9,8 @@ use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
 /// Largest number of samples by which a window may extend beyond its patch on each side.
 pub const MAX_APRON: u32 = 4096;
 
-/// With smooth interpolation: number of points outside a window whose features influence it, at every level but the first.
+/// With smooth interpolation: width in points of the rim around a window in which features influence the window. It applies at
+/// every level but the first.
 pub(crate) const SMOOTH_RIM: u32 = 3;
 
 /// A patch and the samples around it: (patchSize + 2·apron)² samples.
@@ -39,13 +41,13 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    /// Span of the next coarser lattice that is needed to compute this span. It includes one cell of halo on each side.
+    /// Span of the next coarser lattice from which this span can be computed. It includes one cell of halo on each side.
     pub(crate) fn coarser(self) -> Self {
         Self { first: (self.first + 1).div_euclid(2) - 1, last: self.last.div_euclid(2) + 1 }
     }
 
-    /// Span of the next coarser lattice that is needed to compute this span with smooth interpolation. It includes a halo of
-    /// three points on each side.
+    /// Span of the next coarser lattice from which smooth interpolation can compute this span. It includes a halo of three points
+    /// on each side.
     fn coarser_smooth(self) -> Self {
         Self { first: self.first.div_euclid(2) - 3, last: (self.last + 1).div_euclid(2) + 3 }
     }

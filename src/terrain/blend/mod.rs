@@ -65,10 +65,10 @@ impl Shading {
 /// Largest allowed difference between a channel of a colour map and its CPU reference: one level of 255.
 ///
 /// Positions in textures and the cells of the variation are integers, and all other computations are continuous. A weight has an
-/// error of at most 2^-16. The part from height is about 2^-23 · (|height| + |max|) / (max − min). The part from slope is 115
-/// times the steepness's error of 2^-20, for transitions at least one degree wide. A colour has this error, divided by the sum of
-/// weights, plus 1/100 level from the polynomial for the sRGB curve. If the sum is at least [`MIN_TOTAL`], the total is far below
-/// one level. Rounding to 8 bits may still go either way.
+/// error of at most 2^-16. The height contributes about 2^-23 · (|height| + |max|) / (max − min). The slope contributes 115 times
+/// the steepness's error of 2^-20, for transitions at least one degree wide. The error of a colour is the error of a weight,
+/// divided by the sum of weights, plus 1/100 level from the polynomial for the sRGB curve. If the sum of weights is at least
+/// [`MIN_TOTAL`], the error of a colour is far below one level. Rounding to 8 bits may still go either way.
 pub const MAP_BOUND: u8 = 1;
 
 /// Smallest sum of weights for which [`MAP_BOUND`] holds; it also holds if the sum is exactly 0.

@@ -29,8 +29,8 @@ impl BorderPass {
     /// `neighbours` holds indices of earlier patches, counted across all parts.
     ///
     /// # Errors
-    /// [`InputError`] as [`super::waves`], for a width of 0 or not below a patch's size, for more entries in `neighbours` than
-    /// patches, and for parts of different widths or with heights that are too short; [`GpuError`].
+    /// [`InputError`] as [`super::waves`], for a width that is 0 or not below a patch's size, for more entries in `neighbours`
+    /// than patches, and for parts of different widths or with heights that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -58,7 +58,8 @@ impl BorderPass {
             let params = BorderParams { size, width, start: starts[*part] };
             starts[*part] += count;
             let Entries { neighbours, order } = &entries[*part];
-            // A buffer that is bound for writing cannot be bound again for reading. The kernel never reads this placeholder.
+            // A buffer that is bound for writing cannot be bound again for reading. `order` is bound as `others` instead. The
+            // kernel `within` never reads `others`.
             let (kernel, others) = if source == part {
                 (&self.within, order.slice().cast())
             } else {

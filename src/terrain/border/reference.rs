@@ -7,7 +7,7 @@ pub fn border(patch: &mut [i32], size: usize, width: u32, neighbours: [Option<&[
     for y in 0..size {
         for x in 0..size {
             let sample = &mut patch[y * size + x];
-            // Per border: the sample's distance from the border, and the index of the neighbour's sample mirrored at the border.
+            // Per border: the sample's distance from the border, and the index of the sample's mirror image in the neighbour.
             let sides = [
                 (x, y * size + (last - x)),
                 (last - x, y * size + (last - x)),

@@ -6,7 +6,7 @@ use super::{Neighbours, waves};
 use crate::InputError;
 use crate::terrain::fields::Place;
 
-/// One dispatch: it moves samples of patches in one part towards neighbours that all lie in one part.
+/// One dispatch. It moves samples of patches in the part `part` towards neighbours in the part `source`.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Visit {
     /// Index of the part that holds the patches to change.

@@ -68,7 +68,7 @@ pub(crate) fn from_json_value<T: DeserializeOwned>(what: &str, value: &Value) ->
     Ok(object.0)
 }
 
-/// Reads a value of an enum `T` from its variant's name, a JSON string.
+/// Reads a variant of the enum `T` from the variant's name, a JSON string.
 pub(crate) fn named<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
     // A value that is not a string is treated as an empty name: the error then lists the valid names.
     let name = match Value::deserialize(deserializer)? {

@@ -27,7 +27,7 @@ pub const PATCH_EDGE: i64 = 4096;
 /// Largest absolute height, 2^30 − 1 in 1/65536 units. Sums and differences of two heights still fit `i32`.
 pub const HEIGHT_LIMIT: i64 = fixed::HEIGHT_LIMIT as i64;
 
-/// Limit for smooth interpolation of the offsets' range and of absolute feature heights: 2^29, in 1/65536 units.
+/// With smooth interpolation: largest range of the offsets and largest absolute feature height, 2^29 in 1/65536 units.
 const SMOOTH_LIMIT: i64 = 1 << 29;
 
 /// Largest number of texture tiles along a patch's edge. With more, `f32` texture coordinates could not resolve half a texel.
@@ -115,7 +115,7 @@ pub struct TerrainConfig {
     /// World units between neighbouring samples, > 0. Default 1.
     pub terrain_scale: f64,
     /// World units that a zone's texture covers before it repeats; at least 1/16384 of a patch's edge. Default `None`:
-    /// (`patch_size` − 1) / 10 units. With B's `terrainScale` this gives 10 · `terrain_scale` tiles per patch.
+    /// (`patch_size` − 1) / 10 units, which gives 10 · `terrain_scale` tiles along a patch's edge (B's `terrainScale`).
     pub texture_tile: Option<f64>,
     /// Whether steep ground is also textured from the sides (triplanar mapping), which avoids stretched textures there. Default
     /// `false`.
@@ -281,7 +281,8 @@ impl TerrainConfig {
         (self.patch_size - 1).ilog2()
     }
 
-    /// Number of subdivisions L = n + k: from the coarsest lattice down to the samples.
+    /// Number of subdivisions from the coarsest lattice down to the samples: L = n + k, where `patch_size` is 2^n + 1 and k is
+    /// `coarse_levels`.
     pub fn levels(&self) -> u32 {
         self.exponent() + self.coarse_levels
     }
@@ -312,8 +313,8 @@ impl TerrainConfig {
     }
 
     /// Range of the random offsets of edge points at level `level` with smooth interpolation, in 1/65536 height units. It is the
-    /// level's rounded range, reduced by half a level: times 2^(−roughness / 2) (Saupe, "Algorithms for random fractals", in The
-    /// Science of Fractal Images, 1988).
+    /// level's rounded range times 2^(−roughness / 2), which is the reduction of half a level (Saupe, "Algorithms for random
+    /// fractals", in The Science of Fractal Images, 1988).
     pub fn edge_range(&self, level: u32) -> u32 {
         (self.range(level) * libm::exp2(-self.roughness / 2.0)).round_ties_even() as u32
     }

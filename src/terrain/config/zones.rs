@@ -70,18 +70,19 @@ impl BuiltIn {
     }
 }
 
-/// A range of slopes, in degrees from level ground. A zone's weight is 1 inside the range and falls to 0 at its ends.
+/// A range of slopes, in degrees from level ground. A zone's weight is 1 inside the range and falls to 0 in a transition at each
+/// end.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Slope {
-    /// Lower end of the range in degrees, 0 to 90. The weight is ½ there. At 0, the range has no lower transition and the weight
-    /// is 1. Default 0.
+    /// Lower end of the range in degrees, 0 to 90. The weight is ½ at this slope. If `min` is 0, there is no lower transition,
+    /// and the weight on level ground is 1. Default 0.
     pub min: f64,
-    /// Upper end of the range in degrees, above `min`, up to 90. The weight is ½ there. At 90, the range has no upper transition
-    /// and the weight is 1. Default 90.
+    /// Upper end of the range in degrees, above `min`, up to 90. The weight is ½ at this slope. If `max` is 90, there is no upper
+    /// transition, and the weight on vertical walls is 1. Default 90.
     pub max: f64,
-    /// Width of the transition at each end, in degrees, 1 to 45. The weight changes linearly from 0 to 1 across a transition,
-    /// which is centered on the end and cut off at slopes of 0 and 90. Default 10.
+    /// Width of the transition at each end, in degrees, 1 to 45. The weight changes linearly from 0 to 1 across a transition.
+    /// Each transition is centered on its end of the range and cut off at slopes of 0 and 90. Default 10.
     pub fade: f64,
 }
 

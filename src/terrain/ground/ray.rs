@@ -19,8 +19,8 @@ impl Ground {
     /// Positions are in world units from the patch's first sample: x east, y up, z south. `limit` is the largest distance, in
     /// lengths of `direction`.
     ///
-    /// The query tests the triangles as they are drawn, from both sides. It follows the ray from cell to cell and tests each cell
-    /// below the ray once.
+    /// The query tests the drawn triangles, from both sides. It follows the ray from cell to cell and tests each cell below or
+    /// above the ray once.
     pub fn hit(&self, patch: [i32; 2], [at, direction]: [DVec3; 2], limit: f64) -> Option<GroundHit> {
         let field = self.patches.get(&patch)?;
         let cells = self.size as usize - 1;
@@ -54,8 +54,8 @@ impl Ground {
     }
 }
 
-/// Distances at which a ray enters and leaves the slab from 0 to `edge` along one axis; `None` if the ray is outside and
-/// parallel.
+/// Distances at which a ray enters and leaves the slab from 0 to `edge` along one axis; `None` if the ray is parallel to the slab
+/// and outside it.
 fn slab(at: f64, direction: f64, edge: f64) -> Option<[f64; 2]> {
     if direction == 0.0 {
         return (0.0..=edge).contains(&at).then_some([f64::NEG_INFINITY, f64::INFINITY]);
@@ -79,7 +79,7 @@ impl Walk {
     fn new([at, direction]: [DVec3; 2], from: f64, (spacing, cells): (f64, usize)) -> Self {
         let start = at + from * direction;
         let axes = [(at.x, direction.x, start.x), (at.z, direction.z, start.z)];
-        // The conversion to `usize` saturates, so that huge starts give the last cell.
+        // The conversion to `usize` saturates, so that a huge start position gives the last cell.
         let cell = axes.map(|(_, _, start)| ((start / spacing).floor().max(0.0) as usize).min(cells - 1));
         let forward = axes.map(|(_, direction, _)| direction > 0.0);
         let next = std::array::from_fn(|axis| {

@@ -8,7 +8,8 @@ use crate::terrain::fields::Fields;
 use crate::terrain::window::{Window, Windows};
 use crate::{Error, InputError};
 
-/// A generation of any number of windows. The batch is split at storage bindings of 128 MiB and recorded as a whole.
+/// A batch of any number of windows to generate. Each part of the batch fits a storage binding of 128 MiB. All parts are recorded
+/// together.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
     jobs: Vec<HeightJob>,

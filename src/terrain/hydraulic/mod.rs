@@ -34,8 +34,8 @@ pub const MAX_ITERATIONS: u32 = 2048;
 ///
 /// A cycle reads samples at most one sample away. A patch therefore needs one ring of samples around it per cycle. For example,
 /// 300 cycles on a patch of 257² samples begin with windows of 857², eleven times the patch. The relative cost is lower for
-/// larger patches. For the same reason, water reaches a sample from at most one sample away per cycle, so rivers cannot be longer
-/// than the number of cycles.
+/// larger patches. For the same reason, water moves at most one sample per cycle, so the length of a river in samples cannot
+/// exceed the number of cycles.
 ///
 /// No configuration overflows. A sample holds at most 1024 height units of water and 1024 of sediment. Water or sediment above
 /// this limit, and ground above the largest height, stays where it came from. Excess rain is lost.
@@ -51,9 +51,9 @@ pub struct Hydraulic {
     pub evaporation: f64,
     /// Sediment that water can carry per unit of discharge, at a slope of 1; 0 to 1024. Default 100.
     pub capacity: f64,
-    /// Discharge below which water carries no sediment, measured as the number of samples whose rain it equals; 0 to 65536.
-    /// Larger values make valleys begin further from the watershed. The threshold also limits the water that spreads to each
-    /// neighbour independently of the slope. Default 2.
+    /// Discharge below which water carries no sediment, in multiples of the rain on one sample per cycle; 0 to 65536. Larger
+    /// values make valleys begin further from the watershed. The threshold also limits the water that spreads to each neighbour
+    /// independently of the slope. Default 2.
     pub threshold: f64,
     /// Rate of erosion, 0 to 1: if water carries less sediment than it could, this fraction of the difference leaves the ground
     /// per cycle. Default 0.01.

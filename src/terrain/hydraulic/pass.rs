@@ -13,8 +13,8 @@ use crate::terrain::fields::Fields;
 pub struct HydraulicBuffers<'a> {
     /// Read and written: the windows to erode.
     pub windows: &'a Fields,
-    /// Written: a second buffer for the cycles to alternate with. It needs memory for the same number of windows, one sample
-    /// smaller on every side.
+    /// Written: a second buffer. The cycles alternate between `windows` and this buffer. It must hold the same number of windows,
+    /// each one sample smaller on every side.
     pub other: &'a Fields,
     /// Written: scratch memory for water and sediment, at least [`HydraulicPass::flow_points`] elements.
     pub flows: &'a Buffer<Flow>,
@@ -44,7 +44,7 @@ impl HydraulicPass {
 
     /// Prepares all cycles. They alternate between `windows` and `other`, and each drops the outermost ring of samples. After an
     /// even number of cycles the result is in `windows`, otherwise in `other`. Heights must not exceed 2^30 − 1 in size, in
-    /// 1/65536 height units; the results stay within this limit too.
+    /// 1/65536 height units. The results stay within the same limit.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for parameters out of bounds, for windows with fewer rings of samples than cycles, and

@@ -18,7 +18,7 @@ struct Cell {
 }
 
 /// Computes one cycle on a window with [`HydraulicParams::in_width`] samples per row. Returns ground and flow without the
-/// outermost ring of samples. If all heights are at most 2^30 − 1 in size, the new heights are too.
+/// outermost ring of samples. If all heights are at most 2^30 − 1 in size, the new heights stay within this limit.
 pub fn hydraulic(ground: &[i32], flow: &[Flow], params: &HydraulicParams) -> (Vec<i32>, Vec<Flow>) {
     let width = params.in_width as usize;
     let inner = (width - 2) * (width - 2);
@@ -126,7 +126,7 @@ fn capacity(discharge: i32, falls: [i32; 4], params: &HydraulicParams) -> i32 {
     let rate = ((slope * params.capacity) >> 8).min(1 << 18);
     let driving = (discharge - params.threshold).clamp(0, WATER_LIMIT);
     let high = driving >> 12;
-    // A larger rate exceeds the limit in any case, and its product could overflow.
+    // A larger rate would give more than `SEDIMENT_LIMIT` in any case, and its product with `high` could overflow.
     let safe = rate.min(1 << (high.max(1).leading_zeros() - 2));
     (high * safe + (((driving & 4095) * rate) >> 12)).min(SEDIMENT_LIMIT)
 }
@@ -144,9 +144,9 @@ fn lifted(steps: [i32; 4], water: i32, lacking: i32, params: &HydraulicParams) -
 }
 
 /// Fractions of water and sediment that leave through each side in the next cycle. Each virtual pipe keeps half of its flux and
-/// gains a sixteenth of the fall. In addition, 1/32 of the water, at most the threshold, spreads through each pipe, so that
-/// streams do not align with rows and columns. Together at most three quarters of the water leave; otherwise neighbours could
-/// exchange all of their water in every cycle.
+/// gains a sixteenth of the fall of the water surface. In addition, 1/32 of the water, at most the threshold, spreads through
+/// each pipe, so that streams do not align with rows and columns. At most three quarters of the water leave through all pipes
+/// together. If more water left, neighbours could exchange all of their water in every cycle.
 #[inline(always)]
 fn next_shares(cell: Cell, falls: [i32; 4], water: i32, params: &HydraulicParams) -> [i32; 4] {
     let spread = (water >> 5).min(params.threshold);

@@ -46,7 +46,7 @@ impl MorphedFields {
         &self.fields
     }
 
-    /// Sets the time at which the next submission blends.
+    /// Sets the time of the blend for the next submission.
     ///
     /// # Errors
     /// [`InputError`] for a time outside 0..=1; [`crate::gpu::GpuError`].
@@ -55,7 +55,7 @@ impl MorphedFields {
         self.stage(&mut gpu, morph)
     }
 
-    /// Sets the time of the next submission; the upload goes through `to`.
+    /// Sets the time of the blend for the next submission; the upload goes through `to`.
     pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         self.jobs.iter().try_for_each(|job| job.stage(to, morph))
     }

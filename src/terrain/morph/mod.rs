@@ -29,7 +29,8 @@ impl Default for Morph {
     }
 }
 
-/// Checks that the fields of `config` can be blended into those of `target`: both need the same number and spacing of samples.
+/// Checks that the fields of `config` can be blended into the fields of `target`: both need the same number and spacing of
+/// samples.
 ///
 /// # Errors
 /// [`InputError`] that names `patch_size` or `terrain_scale`.

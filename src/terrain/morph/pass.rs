@@ -72,7 +72,7 @@ impl HeightMorphPass {
 pub type MorphJob = ParamsJob<MorphParams>;
 
 impl MorphJob {
-    /// Sets the time at which the next submission blends.
+    /// Sets the time of the blend for the next submission.
     ///
     /// # Errors
     /// [`InputError`] for a time outside 0..=1; [`GpuError`].
@@ -80,7 +80,7 @@ impl MorphJob {
         self.stage(&mut &*gpu, morph)
     }
 
-    /// Sets the time of the next submission; the upload goes through `to`.
+    /// Sets the time of the blend for the next submission; the upload goes through `to`.
     pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         morph.validate()?;
         Ok(to.uniform(&self.uniform, &MorphParams { time: morph.fixed_time(), ..self.params })?)

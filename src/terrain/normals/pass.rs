@@ -25,7 +25,7 @@ impl NormalsPass {
     /// Prepares a job that computes the slopes and normals of `windows`. Samples are `terrain_scale` world units apart. Both
     /// outputs have one entry per sample of the windows, without each window's outermost ring. `gradients` receives the central
     /// differences in 1/65536 height units. `normals` receives three components per sample: x, up, z.
-    /// # Errors
+    ///
     /// # Errors
     /// [`crate::InputError`] for a spacing out of bounds, for windows with nothing inside the outermost ring, and for outputs
     /// that are too short; [`GpuError`].

@@ -1,6 +1,6 @@
 //! Windows around the patches of a batch: each patch with a margin of samples from its neighbours. `seamless` terrain generates
 //! such windows directly. For the border modes `wrap` and `blend`, this module gathers each window from the patch itself or from
-//! its neighbours. Stencil operations after generation then work in every border mode.
+//! its neighbours. Stencil operations can therefore run after generation in every border mode.
 
 use crate::InputError;
 use crate::terrain::config::{Border, TerrainConfig};

@@ -25,6 +25,7 @@ impl PadPass {
     /// Prepares a job that gathers windows, one for each entry of `surrounds`. A window extends `apron` samples beyond its patch
     /// on every side. The job reads the patches from `parts`, where they are stored one after the other, and writes `windows`.
     /// Indices in `surrounds` count patches across all parts.
+    ///
     /// # Errors
     /// [`InputError`] when the apron is not smaller than a patch, when an entry of `surrounds` lacks its own patch or names a
     /// patch beyond `parts`, when parts have different widths or heights that are too short, or when `windows` is too short;

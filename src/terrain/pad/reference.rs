@@ -26,7 +26,7 @@ fn sample(size: usize, around: [Option<&[i32]>; 9], x: i64, y: i64) -> i32 {
     };
     let (column, row) = (tile(x), tile(y));
     // Try the tile that contains the sample, then the adjacent tiles in the same column and in the same row, and last the patch
-    // itself. Clamping then replaces the missing tile's samples.
+    // itself. If the first tile is missing, clamping takes the nearest sample of the tile that replaces it.
     for (column, row) in [(column, row), (column, 1), (1, row), (1, 1)] {
         if let Some(patch) = around[3 * row + column] {
             let local = |i: i64, tile: usize| (i - last * (tile as i64 - 1)).clamp(0, last) as usize;

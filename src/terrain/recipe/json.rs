@@ -10,7 +10,7 @@ use crate::terrain::config::{
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::thermal::Thermal;
 
-/// JSON form of a recipe. The fields of the configuration and those of erosion are in one object.
+/// JSON form of a recipe. One object holds the fields of the configuration and of erosion.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 struct Raw {
@@ -60,8 +60,8 @@ enum RawCorners {
 }
 
 impl RawBorder {
-    /// Converts the border and checks the transition's width. Serde cannot check it, because an error inside an untagged enum
-    /// would quote the whole value.
+    /// Converts the border and checks the transition's width. Serde does not make this check, because a serde error inside an
+    /// untagged enum would quote the whole value.
     fn border(self) -> Result<Border, InputError> {
         match self {
             Self::Named(border) => Ok(border),

@@ -54,8 +54,8 @@ impl Rows {
         &self.values[at * self.width..][..self.width]
     }
 
-    /// Interpolates column by column between four rows; the first one is `first`. Results lie midway between the second and third
-    /// row.
+    /// Interpolates column by column between four rows, starting with row `first`. Results lie midway between the second and
+    /// third of these rows.
     fn between(&self, first: usize) -> Vec<i32> {
         let [a, b, c, d] = [0, 1, 2, 3].map(|row| self.row(first + row));
         (0..self.width).map(|at| four_point(a[at], b[at], c[at], d[at])).collect()
@@ -121,8 +121,8 @@ impl Subdivision<'_> {
         self.finished(means.collect(), self.edge_range, [6, 2 * row as i64 + 1])
     }
 
-    /// Adds random offsets and features to interpolated heights, and clamps them. The heights belong to every other fine point of
-    /// a row, starting at `at` (counted from the first coarse point).
+    /// Clamps interpolated heights, adds random offsets, injects features, and clamps again. The heights belong to every other
+    /// fine point of a row, starting at `at` (counted from the first coarse point).
     fn finished(&self, mut heights: Vec<i32>, range: u32, at: [i64; 2]) -> Vec<i32> {
         let [x, y] = [0, 1].map(|axis| 2 * self.coarse[axis].first + at[axis]);
         heights.iter_mut().for_each(|height| *height = limited(*height));

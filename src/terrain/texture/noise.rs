@@ -1,5 +1,5 @@
-//! Noise that repeats after one tile: gradient noise (Perlin 2002) and cellular noise (Worley 1996). Only arithmetic with the
-//! same results on every machine is used.
+//! Noise that repeats after one tile: gradient noise (Perlin 2002) and cellular noise (Worley 1996). All arithmetic gives the
+//! same results on every machine.
 
 /// Random word for a lattice point. Different keys give independent words.
 pub fn word(key: u32, [x, y]: [u32; 2]) -> u32 {
@@ -68,9 +68,9 @@ pub fn ridges(key: u32, period: u32, count: u32, at: [f32; 2]) -> f32 {
 /// The cell of Worley noise that contains a given point. Every lattice square has one random feature point.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
-    /// Distances to the nearest and the second nearest feature point, in edges of a lattice square.
+    /// Distances to the nearest and the second nearest feature point, in units of a lattice square's edge.
     pub distances: [f32; 2],
-    /// Vector from the nearest feature point to the given point, in edges of a lattice square.
+    /// Vector from the nearest feature point to the given point, in units of a lattice square's edge.
     pub offset: [f32; 2],
     /// Random word of the cell, the same for all of its points.
     pub word: u32,

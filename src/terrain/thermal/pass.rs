@@ -13,8 +13,8 @@ use crate::terrain::fields::Fields;
 pub struct ThermalBuffers<'a> {
     /// Read and written: the windows to erode.
     pub windows: &'a Fields,
-    /// Written: a second buffer for the iterations to alternate with. It needs memory for the same number of windows, one sample
-    /// smaller on every side.
+    /// Written: a second buffer. The iterations alternate between `windows` and this buffer. It must hold the same number of
+    /// windows, each one sample smaller on every side.
     pub other: &'a Fields,
 }
 
