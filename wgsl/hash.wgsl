@@ -1,8 +1,8 @@
 // Counter-based random words: Threefry-2x32 with 20 rounds (Salmon et al. 2011, docs/sources.md). The word of any counter can
 // be computed on its own, in any order.
 
-// Results of four random draws, one per lane, for the counters (x[i], y[i]). The lanes are independent. All 64 bits of a lane
-// are uniform.
+// Results of four random draws, one per lane, for the four counters of `threefry2x32`. The lanes are independent. All 64 bits
+// of a lane are uniform.
 struct Words {
     // First 32 random bits of each draw.
     first: vec4<u32>,

@@ -24,14 +24,14 @@ const THREADS = 64u;
 const GROWTH: f32 = 1.0 + 1.0 / 524288.0;
 // Fraction of the center's distance that is added to extents, to cover rounding errors.
 const OF_CENTER: f32 = 1.0 / 2097152.0;
-// Length that is added to a row: 2⁻⁶². It is needed because devices may flush squares to 0.
+// Length that is added to the length of a matrix row: 2⁻⁶². It is needed because devices may flush squares to 0.
 const LEAST: f32 = 2.16840434e-19;
 // The largest f32. The literal has exactly these digits because some compilers refuse larger literals.
 const LARGEST = 3.4028234663852886e38;
 
-// Lower corner of the box of each thread's bones.
+// Lower corner of the box around each thread's bones.
 var<workgroup> lows: array<vec3<f32>, THREADS>;
-// Upper corner of the box of each thread's bones.
+// Upper corner of the box around each thread's bones.
 var<workgroup> highs: array<vec3<f32>, THREADS>;
 
 @compute @workgroup_size(THREADS)

@@ -4,18 +4,18 @@
 import package::wgsl::animation::gate_state::{Lod, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, ClipClock, fraction_of, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between};
 
-// One of the constants below.
+// Stage of the kernel: one of the constants below.
 override STAGE: u32 = 0;
 
 // Stage: a thread ranks up to 32 bones of one instance and counts the ranks.
 const RANK = 0u;
 // Stage: one workgroup finds the lowest rank that is served.
 const CHOOSE = 1u;
-// Stage: a thread selects the bones above that rank and counts the bones of that rank.
+// Stage: a thread selects the bones above the lowest served rank and counts the bones of the lowest served rank.
 const DECIDE = 2u;
-// Stage: one workgroup computes prefix sums of these counts over the instances.
+// Stage: one workgroup computes prefix sums, over the instances, of the numbers of bones of the lowest served rank.
 const SUM = 3u;
-// Stage: a thread selects bones of that rank while the budget lasts.
+// Stage: a thread selects bones of the lowest served rank while the budget lasts.
 const SETTLE = 4u;
 
 // Number of threads in a workgroup.
@@ -29,7 +29,7 @@ struct BudgetParams {
     instances: u32,
     // Number of bones per instance.
     bones: u32,
-    // Number of 32-bit words per instance with one bit per bone.
+    // Number of 32-bit words per instance. Each bone has one bit.
     words: u32,
     // Number of entries per row of the table.
     stride: u32,
@@ -50,14 +50,14 @@ struct BudgetParams {
 @group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
 // Accumulated motion of each bone of each instance when the bone was last sampled.
 @group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
-// Out: the bones that are sampled, one bit per bone. A second section in the same layout holds the bones that are sampled
-// ahead, which are none here.
+// Out: the bones that are sampled, one bit per bone. A second section in the same layout is for bones that are sampled ahead.
+// All its bits become 0.
 @group(0) @binding(6) var<storage, read_write> bits: array<u32>;
 // Ranks of bones, two per word and 16 words for each word of bits. Then one bit per bone, set for bones of the lowest rank that
 // is served.
 @group(0) @binding(7) var<storage, read_write> ranks: array<u32>;
-// Number of bones of each rank; then the values at the indices FORCED, LOWEST and ROOM. From TIES on: the number of bones of
-// the lowest served rank per instance.
+// Number of bones of each rank; then the values at the indices FORCED, LOWEST and ROOM. From TIES on: per instance, the number
+// of bones of the lowest served rank.
 @group(0) @binding(8) var<storage, read_write> tally: array<atomic<u32>>;
 
 // Index in `tally`: number of bones that must be sampled.
@@ -66,7 +66,7 @@ const FORCED = 1024u;
 const LOWEST = 1025u;
 // Index in `tally`: number of bones of the lowest rank that the budget permits.
 const ROOM = 1026u;
-// Index in `tally` of the first instance's number of bones of the lowest rank.
+// Index in `tally`: number of bones of the lowest rank in the first instance. The numbers of the other instances follow.
 const TIES = 1027u;
 
 // Sum of counts per thread.

@@ -26,7 +26,7 @@ struct ClipClockParams {
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
 // Timelines of all clips.
 @group(0) @binding(3) var<storage, read> timelines: array<Timeline>;
-// Binding 4 holds the key times.
+// Binding 4 holds the key times: `times` in wgsl/animation/timeline.wgsl.
 // Level of detail of each instance.
 @group(0) @binding(5) var<storage, read> lods: array<Lod>;
 // Weights of the layers above the base layer, layer by layer, one per instance.

@@ -1,11 +1,12 @@
-// Turns bits into lists: the active pairs of instance and bone, and the instances with active pairs. Also marks the slots with
-// an active bone at or above them, which must be updated, and writes the arguments of the indirect dispatches. On every device,
-// lists are in the order of instances and, within an instance, of slots. There are three stages, one dispatch each.
+// Turns bits into lists: the active pairs of instance and bone, and the instances with active pairs. Also marks the slots that
+// must be updated, which are the slots of active bones and all slots below them. Writes the arguments of the indirect
+// dispatches. On every device, lists are in the order of instances and, within an instance, of slots. There are three stages,
+// one dispatch each.
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::order::Slot;
 import package::wgsl::dispatch::rows_of_workgroups;
 
-// One of the constants below.
+// Stage of the kernel: one of the constants below.
 override STAGE: u32 = 0;
 
 // Stage: a thread spreads the active bits of one instance to all slots below them, and counts the active bits.
@@ -24,9 +25,9 @@ struct CompactParams {
     instances: u32,
     // Number of bones per instance.
     bones: u32,
-    // Number of 32-bit words per instance with one bit per slot.
+    // Number of 32-bit words per instance. Each slot has one bit.
     words: u32,
-    // Number of dispatches after the first one that handle updated instances.
+    // Number of dispatches, besides the first one, that handle updated instances.
     served: u32,
     // Largest number of workgroups along x.
     most_groups: u32,
@@ -49,8 +50,9 @@ struct CompactParams {
 @group(0) @binding(6) var<storage, read_write> pair_dispatch: array<vec4<u32>, 1>;
 // Out: indices of the instances with active pairs.
 @group(0) @binding(7) var<storage, read_write> updated_instances: array<u32>;
-// Out: dispatches, as numbers of workgroups along x, y and z. The first has one thread per updated instance; its w is the
-// number of updated instances. Others have several threads per updated instance; their w holds that number, also on input.
+// Out: dispatches, as numbers of workgroups along x, y and z. The first dispatch has one thread per updated instance; its w is
+// the number of updated instances. Every other dispatch has several threads per updated instance. Its w is this number of
+// threads, which is also an input.
 @group(0) @binding(8) var<storage, read_write> instance_dispatches: array<vec4<u32>>;
 
 // Sum per thread: active pairs (x) and updated instances (y).
@@ -63,13 +65,13 @@ fn run(start: u32, end: u32) -> u32 {
 }
 
 // Stage SPREAD for one instance. Driver workaround: where uniforms alone decide a loop's end, lavapipe compiles the kernel
-// again in each submission. Hence the second condition of this loop and of the loop in `scan`. The condition always holds,
-// because no subtree ends beyond the last bone.
+// again in each submission. This loop and the loop in `scan` therefore have a second condition, which always holds. In this
+// loop, it holds because no subtree ends beyond the last bone.
 fn spread(instance: u32) {
     let first_word = instance * params.words;
     let all_words = params.instances * params.words;
     var count = 0u;
-    // End of the last updated subtree: the slot after its last one.
+    // End of the last updated subtree: the slot after the subtree's last slot.
     var end = 0u;
     for (var word = 0u; word < params.words && end <= params.bones; word++) {
         let chosen = bits[first_word + word];

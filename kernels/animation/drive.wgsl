@@ -9,7 +9,7 @@ struct DriveParams {
     driven: u32,
     // Number of instances.
     instances: u32,
-    // Number of 32-bit words per instance with one bit per slot.
+    // Number of 32-bit words per instance. Each slot has one bit.
     words: u32,
 }
 

@@ -1,16 +1,16 @@
 // Gate: decides which bones of which instances are sampled this frame, one bit each. All arithmetic is on integers, so that
 // every device decides identically. A thread decides for up to 32 bones of one instance. With BOUNDED, a thread decides for all
-// bones, because parents pass their remaining error budget to their children.
+// bones of one instance, because parents pass their remaining error budget to their children.
 import package::wgsl::animation::gate_state::{Lod, OMEGA_ONE, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, is_ahead, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between, scale_by_fraction};
 import package::wgsl::animation::order::NO_PARENT;
 
-// One of the constants below.
+// Mode of the gate: one of the constants below.
 override MODE: u32 = 0;
 
 // Mode: all bones that the clip moves are sampled.
 const OFF = 0u;
-// Mode: each bone skips one update per period, which depends on the bone's priority and Ω.
+// Mode: each bone skips one update per period. The period depends on the bone's priority and Ω.
 const SKIP_PERIOD = 1u;
 // Mode: a fraction Ω of frames samples all bones of an instance; other frames sample none.
 const UNIFORM = 2u;
@@ -25,7 +25,7 @@ struct GateParams {
     instances: u32,
     // Number of bones per instance.
     bones: u32,
-    // Number of 32-bit words per instance with one bit per slot.
+    // Number of 32-bit words per instance. Each slot has one bit.
     words: u32,
     // Number of entries per row of the table.
     stride: u32,
@@ -37,8 +37,8 @@ struct GateParams {
     period: u32,
     // Number of frames since the start.
     frame: u32,
-    // Index of the table's row with each slot's nearest animated ancestor in the first clip: the nearest slot above it that the
-    // clip moves. Rows for the other clips follow.
+    // Index of the table's row with the nearest animated ancestors of all slots in the first clip. The nearest animated
+    // ancestor of a slot is the nearest slot above it that the clip moves. Rows for the other clips follow.
     first_above: u32,
 }
 
@@ -50,12 +50,13 @@ struct GateParams {
 @group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
 // Per clip: the index of its last row in `table`, then one bit per bone that the clip moves.
 @group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
-// Rows of the gate's table. They hold priorities, four per vector; or per bone the accumulated motion (x) and its increase up
-// to the next row (y). In a clip's last row, x is the motion over the whole clip, and y the bone's encoded error budget.
+// Rows of the gate's table. With SKIP_PERIOD, they hold priorities, four per vector. With BOUNDED, they hold per bone the
+// accumulated motion (x) and its increase up to the next row (y). In a clip's last row, x is the motion over the whole clip,
+// and y the bone's encoded error budget.
 @group(0) @binding(4) var<storage, read> table: array<vec2<u32>>;
 // Accumulated motion of each bone of each instance when the bone was last sampled.
 @group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
-// Remaining error budget of each bone that has other children than the next bone in the order.
+// Remaining error budget of each bone with a child that is not the next bone in the order.
 @group(0) @binding(6) var<storage, read_write> remaining: array<u32>;
 // One bit per slot of each instance, in three sections of the same layout: bones that are sampled, the subset that is sampled
 // ahead, and bones whose model matrices this frame updates.
@@ -129,10 +130,11 @@ fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
 // Exclusive upper bound of the allowed motion, in units of the table.
 const EVERYTHING: u32 = 1u << 30u;
 
-// First bit, in a bone's encoded error budget, of its fraction of the remaining budget. The fraction is in 1/FRACTION_ONE.
+// In a bone's encoded error budget: the lowest bit of the fraction of the remaining budget that the bone may use. The fraction
+// is in 1/FRACTION_ONE.
 const BUDGET_FRACTION_SHIFT: u32 = 8u;
-// Mask, in a bone's encoded error budget, of the exponent of the quantization slack. The slack, which is added to missed
-// motion, is 2^(exponent − 1), or 0 for exponent 0.
+// In a bone's encoded error budget: the mask of the exponent of the quantization slack. The slack is 2^(exponent − 1), or 0 for
+// exponent 0. It is added to missed motion.
 const BUDGET_SLACK_MASK: u32 = 31u;
 // Flag in a bone's encoded error budget: the bone above is not the previous one in the order.
 const STARTS: u32 = 32u;
@@ -154,7 +156,7 @@ struct Chosen {
 
 // Allowed motion of one instance, and its position in the table.
 struct AccumulatedMotion {
-    // Motion that the instance's bones may miss in all, in units of the table.
+    // Motion that all bones of the instance together may miss, in units of the table.
     allowed: u32,
     // Clip clock of the instance.
     clip_clock: ClipClock,
@@ -163,12 +165,13 @@ struct AccumulatedMotion {
 }
 
 // Mode BOUNDED: decides for bones in order, parents first. Each bone may miss a fraction of the remaining budget. A bone that
-// missed no more than that is not sampled; it uses up the motion that it missed and passes the rest of the budget to the bones
-// below. A bone that missed more is sampled and passes on all of the remaining budget.
+// missed no more than this fraction is not sampled. Its missed motion is subtracted from the budget, and the bones below get
+// the rest. A bone that missed more is sampled, and the bones below get all of the remaining budget.
 //
-// A bone is sampled ahead if its motion until the look-ahead time is within its fraction too. It is then off by that motion
-// now, which it uses up, and can stay for twice as long. Bones in `asked` are always sampled. If nothing may be missed, all
-// bones are sampled. `left` is the budget that the previous bone left.
+// A sampled bone is sampled ahead if its motion until the look-ahead time is also within its fraction. In this frame, the bone
+// is then off by this motion, which is subtracted from the budget. In return, the bone can stay unsampled for twice as long.
+// Bones in `asked` are always sampled. If nothing may be missed, all bones are sampled. `left` is the budget that the previous
+// bone left.
 fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated: AccumulatedMotion, left: ptr<function, u32>) -> Chosen {
     let forced = asked | select(0u, candidates, accumulated.allowed == 0u);
     let row = accumulated.clip_clock.row * params.stride + first;
@@ -230,7 +233,7 @@ fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: pt
     let record = clip_clock.clip * (params.words + 1u);
     let all = 0xffffffffu >> (32u - min(params.bones - first, 32u));
     let candidates = select(animated_bones[record + 1u + word], all, reason == UPDATE_REASON_BLENDED);
-    // Accumulated motion describes a single clip, so it cannot decide for other update reasons.
+    // Accumulated motion describes a single clip, so it decides only for the update reason UPDATE_REASON_FREE.
     let forced = select(0u, all, reason >= UPDATE_REASON_FORCED);
     if MODE == BOUNDED {
         let accumulated = AccumulatedMotion(min(lod.allowed, EVERYTHING - 1u), clip_clock, animated_bones[record]);

@@ -1,6 +1,6 @@
 // Keyframe cursors of instances: for each timeline of an instance's clip, the key before the current time and the fraction of
 // the interval to the next key. A thread finds one cursor. With COMPACTED, only listed instances are handled, with all their
-// layers. Cursors of the base layer at the look-ahead time are added.
+// layers. With COMPACTED, the kernel also finds the base layer's cursors at the look-ahead time.
 import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
@@ -69,7 +69,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     let timeline = timelines[clip.first_timeline + timeline_index];
     var time = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * params.elapsed);
     if COMPACTED && (is_ahead || entry < params.instances) {
-        // This is the exact time that the gate used, because both must agree on the keys that have passed.
+        // This is the exact time that the gate used, because cursors and gate must agree on the keys that have passed.
         let seen = history[playing];
         if is_ahead && seen.w == seen.z {
             return;

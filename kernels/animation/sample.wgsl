@@ -1,5 +1,5 @@
 // Samples the local transforms of bones at the keyframe cursors of their instances (glTF 2.0, appendix C). A thread samples one
-// bone of one instance: every bone, or with COMPACTED the listed bones. With LAYERED, a thread blends the clips of further
+// bone of one instance. With COMPACTED, only the listed bones are sampled. With LAYERED, a thread blends the clips of further
 // layers over the base layer, by weight and mask.
 import package::wgsl::animation::clip::{CONSTANT, KeyframeCursor, SetTrack, cursor_of_words, first_value_of, interpolation_of, timeline_of};
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
@@ -50,8 +50,8 @@ struct SampleParams {
 // with one value per bone.
 @group(0) @binding(8) var<storage, read> layer_weights: array<f32>;
 
-// Squared length below which an interpolated spline of rotations has no direction. The rotation is then the value of the key
-// before.
+// Squared length below which a quaternion that a spline interpolates has no direction. The rotation is then the value of the
+// key before the position.
 const VANISHING: f32 = 1e-12;
 
 // Position between two values of a track.
@@ -92,8 +92,8 @@ fn between(track: SetTrack, cursor: KeyframeCursor) -> Between {
     return Between(first_value_of(track) + cursor.key, select(INTERPOLATION_STEP, code, fraction > 0.0), fraction);
 }
 
-// Value of a cubic Hermite spline at the fraction `t` of the interval. `value` is the index of the value before, which is
-// `start`.
+// Value of a cubic Hermite spline at the fraction `t` of the interval between two values. `start` is the first of the two
+// values, and `value` its index.
 fn spline(start: vec4<f32>, value: u32, t: f32) -> vec4<f32> {
     let square = t * t;
     let cube = square * t;
@@ -168,7 +168,7 @@ fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     return Local(moved, turned, scaled);
 }
 
-// Blends two transforms. Rotations are blended along the chord to the nearer one of q and -q.
+// Blends two transforms. Rotations are blended linearly and normalized; of the quaternions q and -q, the nearer one is used.
 fn blend(below: Local, over: Local, weight: f32) -> Local {
     let rest = 1.0 - weight;
     let nearer = select(weight, -weight, dot(below.turned, over.turned) < 0.0);

@@ -1,6 +1,6 @@
-// Moves the bytes that the sampling of animations moves, without its arithmetic. For each bone, a thread reads the two keys
-// around the current cursor on three tracks. The thread writes the words of a local transform, each the exclusive or of two
-// keys. Instances share tracks like instances that play the same clip.
+// Moves the bytes that the sampling of animations moves, but leaves out the arithmetic. For each bone, a thread reads the two
+// keys around the current cursor on three tracks. The thread writes the words of a local transform, each the exclusive or of
+// two keys. Instances that play the same clip share its tracks.
 import package::wgsl::animation::clip::{SetTrack, first_value_of};
 import package::wgsl::animation::instance::AnimationInstance;
 

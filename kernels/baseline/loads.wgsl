@@ -8,7 +8,7 @@ struct LoadsParams {
 
 // Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: LoadsParams;
-// Texture to read; the red channel counts.
+// Texture to read. Only the red channel is used.
 @group(0) @binding(1) var texels: texture_2d<f32>;
 // Out: sum of each thread's texels, row by row.
 @group(0) @binding(2) var<storage, read_write> sums: array<f32>;

@@ -13,7 +13,7 @@ struct TexelsParams {
     planes: u32,
     // Texture tiles per sample, in 2^-22 tiles.
     tiles_per_sample: u32,
-    // Texture tiles per unit of height, in 2^-22 tiles.
+    // Texture tiles per world unit of height, in 2^-22 tiles.
     tiles_per_unit: u32,
 }
 

@@ -65,8 +65,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         instance_lods[instance] = InstanceLod(0.0, 0u, 0u);
         return;
     }
-    // An attached mesh may reach further from its bone than the vertices that the gate's table covers. Bones of a character
-    // with such a mesh get no budget.
+    // An attached mesh may reach further from its bone than the vertices that the gate's table covers. Therefore, the allowed
+    // displacement of bones is 0 for a character with an attached mesh.
     let carries = (instances[params.first + instance].flags & INSTANCE_CARRIES) != 0u;
     let units = u32(min(floor(params.bone_fraction * within / params.unit), MAX_UNITS));
     lods[instance] = Lod(OMEGA_ONE, select(units, 0u, carries), FULL_WEIGHT, 0u);

@@ -1,7 +1,7 @@
 // Placements of meshes that are attached to bones, in one view. A thread multiplies the transform of a character, the model
 // matrix of the bone and the mesh's own offset. If no view of the frame sees the character, its bones are outdated. The mesh
-// then becomes a point, which draws nothing. If the scene keeps its last frame, the thread also writes the mesh's transform of
-// that frame.
+// then becomes a point, which draws nothing. If the scene keeps its last frame, the thread also writes the transform that the
+// mesh had in the last frame.
 import package::wgsl::affine::product_row;
 import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::view::SelectView;
@@ -68,7 +68,8 @@ struct KeptBone {
 // length: instances
 @group(0) @binding(5) var<storage, read> allowed: array<f32>;
 // Three rows per instance of the scene: the transform from model space to positions relative to the corner of the view's cell.
-// From `first_last` on: the last frame's transforms, relative to the same cell. Out: the rows of attached meshes.
+// From index `first_last` on: the last frame's transforms, relative to the corner of the same cell. Out: the rows of attached
+// meshes.
 // length: placements
 @group(0) @binding(6) var<storage, read_write> placements: array<array<vec4<f32>, 3>>;
 // All instances of the scene in the state of the last frame. If the last frame is not kept, this is the same buffer as
@@ -110,7 +111,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     if params.first_last == 0u {
         return;
     }
-    // All views of a frame write the same values. They read only entries that no view of the frame writes.
+    // All views of a frame write equal values, and read only entries that no view of the frame writes.
     let last = kept[2u * index + ((params.frame + 1u) & 1u)];
     var last_local = local;
     if params.last_frame != 0u && last.frame == params.last_frame && last.key == attachment.key {

@@ -1,26 +1,26 @@
 // Finds how much the levels of detail of a view must be coarsened so that its triangles fit a budget (A section 6.3). Each
-// coarser level of an instance saves triangles once the factor of its metric is large enough. A histogram sums these savings
-// over the logarithm of the factor, rank by rank. It gives the bin of the smallest sufficient factor. A second histogram
-// divides this bin into parts. Views that share a budget add to the same histograms, stage by stage.
+// coarser level of an instance saves triangles once the factor of the instance's metric is large enough. A histogram sums these
+// savings over the logarithm of the factor, rank by rank. It gives the bin of the smallest sufficient factor. A second
+// histogram divides this bin into parts. All views that share a budget add to these two histograms, stage by stage.
 import package::wgsl::lod::budget_state::BudgetState;
 import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, NO_RANK, OBJECT_LEVELS, RANKS, UNSEEN_METRIC, decision_level, decision_next, decision_steps, metric_bits};
 import package::wgsl::lod::transition::{held_level, is_faded_out, level_within, threshold_of, transition_decision};
 import package::wgsl::lod::view::SelectView;
 
-// One of the constants below.
+// Stage of the kernel: one of the constants below.
 override STAGE: u32 = 0u;
 
-// Stage: a thread per instance adds the instance's triangles to their sum, and its savings to the bins.
+// Stage: a thread per instance adds the instance's triangles to the sum of triangles, and the instance's savings to the bins.
 const BINS: u32 = 0u;
-// Stage: one workgroup finds the bin at which the triangles fit.
+// Stage: one workgroup finds the bin whose savings bring the triangles within the budget.
 const FIND_BIN: u32 = 1u;
-// Stage: a thread per instance adds the instance's savings in that bin to the parts of the bin.
+// Stage: a thread per instance adds the instance's savings in the found bin to the parts of this bin.
 const PARTS: u32 = 2u;
-// Stage: one workgroup finds the part at which the triangles fit, and writes the factors.
+// Stage: one workgroup finds the part whose savings bring the triangles within the budget, and writes the factors.
 const FIND_PART: u32 = 3u;
-// Stage: a thread per instance adds the triangles that the instance draws, both levels of a fade included.
+// Stage: a thread per instance adds the triangles that the instance draws. An instance that fades counts with both levels.
 const FADES: u32 = 4u;
-// Stage: one thread ends all fades of the frame if their triangles do not fit.
+// Stage: one thread ends all fades of the frame if the triangles with both levels of each fade exceed the budget.
 const FINISH: u32 = 5u;
 
 // Number of bins per rank.
@@ -35,7 +35,7 @@ const OCTAVE: f32 = 65536.0;
 const MAX_FACTOR: f32 = 65536.0;
 // Safety margin for the rounding of `log2` and `exp2`, in parts of a bin.
 const ROUNDED_PARTS: u32 = 2u;
-// Time constant with which the pressure falls exponentially, in seconds.
+// Time constant of the pressure's exponential fall, in seconds.
 const SETTLING: f32 = 0.15;
 
 // Parameters of the kernel `lod/budget`.
@@ -85,7 +85,7 @@ struct BudgetWork {
 // length: 1
 @group(0) @binding(7) var<storage, read_write> work: array<BudgetWork>;
 
-// Savings in triangles of each of 256 runs, which are ranges of consecutive bins or parts.
+// Savings in triangles of each of 256 runs. A run is a range of consecutive bins or parts.
 var<workgroup> runs: array<u32, 256>;
 // Result of `find_run`: the index of the run, and the number of remaining triangles.
 var<workgroup> found: array<u32, 2>;
@@ -95,7 +95,7 @@ fn triangles_of(object: LodObject, level: u32) -> u32 {
     return object.triangles[level >> 2u][level & 3u];
 }
 
-// Index of the part of a rank from which on `factor_at` is at least `factor`.
+// Index of the part of a rank at and beyond which `factor_at` is at least `factor`.
 fn part_of(factor: f32) -> u32 {
     return u32(ceil(max(log2(factor), 0.0) * OCTAVE)) + ROUNDED_PARTS;
 }
@@ -168,7 +168,7 @@ fn add_savings(chosen: Chosen, stage: u32) {
     }
 }
 
-// Adds the triangles that an instance draws with this frame's factors, both levels of its fade included.
+// Adds the triangles that an instance draws with this frame's factors. An instance that fades counts with both levels.
 fn add_fades(chosen: Chosen, index: u32) {
     if !chosen.is_seen {
         return;
@@ -183,8 +183,8 @@ fn add_fades(chosen: Chosen, index: u32) {
     atomicAdd(&work[0].fading, drawn);
 }
 
-// Finds the first run at which the savings of all runs up to it bring `triangles` within the limit. Returns the run's index,
-// 256 if there is none, and the triangles that remain before the run's savings are subtracted.
+// Finds the first run that brings `triangles` within the limit: the sum of the savings up to and including this run suffices.
+// Returns the run's index, 256 if there is none, and the triangles that remain before the run's savings are subtracted.
 fn find_run(lane: u32, triangles: u32) -> vec2<u32> {
     workgroupBarrier();
     if lane == 0u {
@@ -200,7 +200,7 @@ fn find_run(lane: u32, triangles: u32) -> vec2<u32> {
     return vec2<u32>(found[0], found[1]);
 }
 
-// Finds the bin at whose savings the triangles come within the limit, and clears the bins.
+// Finds the bin whose savings bring the triangles within the limit, and clears the bins.
 fn find_bin(lane: u32) {
     let length = ALL_BINS / 256u;
     var saved = 0u;
@@ -226,7 +226,7 @@ fn find_bin(lane: u32) {
     }
 }
 
-// Finds the part of the bin at which the triangles fit, writes the state, and clears the parts.
+// Finds the part of the bin whose savings bring the triangles within the limit, writes the state, and clears the parts.
 fn find_part(lane: u32) {
     let length = BIN_PARTS / 256u;
     var saved = 0u;
@@ -244,7 +244,7 @@ fn find_part(lane: u32) {
         }
         let is_needed = work[0].bin != 0xffffffffu;
         let is_missed = is_needed && work[0].bin >= ALL_BINS;
-        // The savings of a part hold from the start of the part on.
+        // The factor at the start of a part already gives all savings of the part.
         let needed = select(0u, BIN_PARTS * min(work[0].bin, ALL_BINS - 1u) + max(part, 1u) - 1u, is_needed);
         write_state(select(needed, BIN_PARTS * ALL_BINS - 1u, is_missed), is_missed);
     }
@@ -254,8 +254,8 @@ fn find_part(lane: u32) {
     }
 }
 
-// Writes the factors of all ranks. The pressure rises to `needed` at once, and falls towards it with the time constant
-// `SETTLING`.
+// Writes the factors of all ranks. The pressure rises to `needed` at once. If it is above `needed`, it falls towards `needed`
+// with the time constant `SETTLING`.
 fn write_state(needed: u32, is_missed: bool) {
     let last = select(needed, state[0].pressure, view.is_next != 0u);
     let ahead = f32(last - min(needed, last)) * exp(-view.seconds / SETTLING);

@@ -4,7 +4,7 @@
 import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LISTS, SceneDraw};
 import package::wgsl::lod::transition::{NO_LIST, transition_entries};
 
-// One of the constants below.
+// Stage of the kernel: one of the constants below.
 override STAGE: u32 = 0u;
 
 // Stage: a workgroup per object computes prefix sums of the counts of its blocks.
@@ -12,7 +12,7 @@ const SUM: u32 = 0u;
 // Stage: a thread per instance writes list entries. The threads of a block synchronize at barriers.
 const PLACE: u32 = 1u;
 
-// Number of runs into which an object's blocks are divided. They are summed in parallel, with one thread per run and list.
+// Number of runs into which an object's blocks are divided. The runs are summed in parallel, with one thread per run and list.
 const RUNS: u32 = 8u;
 // Number of blocks per workgroup in the stage `PLACE`.
 const PLACED_BLOCKS: u32 = 4u;

@@ -21,7 +21,7 @@ const MAX_MOTION: f32 = 4.0;
 // The instances of all blocks.
 // length: BLOCK * blocks
 @group(0) @binding(3) var<storage, read> instances: array<SceneInstance>;
-// Out, per instance: the smallest displacement, in model units, that any view of the frame allows which sees the instance.
+// Out, per instance: the smallest displacement, in model units, that is allowed by a view of the frame that sees the instance.
 // `UNSEEN_ALLOWED` if no view sees the instance.
 // length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
@@ -36,7 +36,7 @@ const MAX_MOTION: f32 = 4.0;
 // length: BLOCK * blocks
 @group(0) @binding(7) var<storage, read> decisions: array<u32>;
 
-// Whether the view may see the instance at all, wherever it is.
+// Whether the view may see the instance, regardless of the instance's position.
 fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
     let is_alive = object_flags_shown(object.flags) != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
     let casts = view.casters == 0u || (instance.flags & INSTANCE_CASTS) != 0u;
@@ -54,7 +54,7 @@ fn is_inside(center: vec3<f32>, radius: f32) -> bool {
     return least >= 0.0;
 }
 
-// Position of a point in the picture, relative to its middle, in units of half the picture's height. A point behind the eye
+// Position of a point in the picture, from the picture's middle, in units of half the picture's height. A point behind the eye
 // gets a position far outside.
 fn in_picture(rows: array<vec4<f32>, 3>, point: vec3<f32>) -> vec2<f32> {
     let at = vec4<f32>(point, 1.0);
@@ -62,8 +62,8 @@ fn in_picture(rows: array<vec4<f32>, 3>, point: vec3<f32>) -> vec2<f32> {
     return select(vec2<f32>(1e4), vec2<f32>(dot(rows[0], at), dot(rows[1], at)) / w, w > 0.0);
 }
 
-// Factor of the metric for instances that are perceived poorly (A section 6.4): instances that cross the picture, and instances
-// away from its middle.
+// Factor of the metric for instances that are perceived poorly (A section 6.4): instances that move across the picture, and
+// instances away from the picture's middle.
 fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
     if object.motion == 0.0 && object.periphery == 0.0 {
         return 1.0;

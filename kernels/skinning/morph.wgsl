@@ -28,7 +28,7 @@ struct MorphParams {
 @group(0) @binding(0) var<uniform> params: MorphParams;
 // Vertices of the mesh, five pairs of floats each.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
-// Index of each vertex's first delta, and at the end the number of deltas.
+// Index of each vertex's first delta. The last element is the number of deltas.
 @group(0) @binding(2) var<storage, read> offsets: array<u32>;
 // Three vectors per delta: position (xyz) with the target as bits (w); normal; tangent.
 @group(0) @binding(3) var<storage, read> deltas: array<vec4<f32>>;

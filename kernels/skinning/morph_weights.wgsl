@@ -39,15 +39,16 @@ struct WeightEntry {
 @group(0) @binding(2) var<storage, read> entries: array<WeightEntry>;
 // Level of detail of each instance, which tells whether the instance is visible.
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
-// Binding 4 holds the key times.
+// Binding 4 holds the key times: `times` in wgsl/animation/timeline.wgsl.
 // Values of the keys of all clips, key by key, one value per target.
 @group(0) @binding(5) var<storage, read> values: array<f32>;
 // Out: weights of the targets, instance by instance.
 @group(0) @binding(6) var<storage, read_write> weights: array<f32>;
 
-// Value of a cubic Hermite spline at the fraction `t` of the interval from a key to the next, which takes `seconds`.
+// Value of a cubic Hermite spline between two keys. `t` is the fraction of the interval from `key` to the next key, and
+// `seconds` the duration of the interval.
 fn spline(first: u32, key: u32, t: f32, seconds: f32) -> f32 {
-    // Each key has in-tangents, values and out-tangents, in this order. The next key's follow.
+    // Each key has in-tangents, values and out-tangents, in this order. The data of the next key follows.
     let at = first + 3u * key * params.targets;
     let start = values[at + params.targets];
     let leaving = values[at + 2u * params.targets];

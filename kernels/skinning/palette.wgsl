@@ -19,7 +19,7 @@ struct PaletteParams {
 
 // Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: PaletteParams;
-// Indices in the skeleton of the skin's bones.
+// Index in the skeleton of each bone of the skin.
 @group(0) @binding(1) var<storage, read> bones: array<u32>;
 // Inverse bind matrices: three rows per bone of the skin.
 @group(0) @binding(2) var<storage, read> inverse_binds: array<vec4<f32>>;
@@ -27,8 +27,8 @@ struct PaletteParams {
 @group(0) @binding(3) var<storage, read> model_matrices: array<vec4<f32>>;
 // Level of detail of each instance.
 @group(0) @binding(4) var<storage, read> instance_lods: array<InstanceLod>;
-// Out: three rows per bone of the skin and instance. With DUAL, four vectors: the rotation, the dual part, and the stretch's
-// diagonal and elements above the diagonal.
+// Out: three rows per bone of the skin and instance. With DUAL, four vectors: the rotation, the dual part, the diagonal of the
+// stretch, and the elements of the stretch above the diagonal.
 @group(0) @binding(5) var<storage, read_write> palette: array<vec4<f32>>;
 
 // A unit vector perpendicular to the unit vector `v` (Duff et al. 2017).

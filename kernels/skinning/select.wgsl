@@ -1,7 +1,8 @@
 // Selects the clusters to be skinned, among the clusters of visible instances at their level of detail. A thread decides for
 // one cluster. A cluster is selected if one of its bones was updated, or if the influences of its instance changed. It is also
-// selected if the last frame's level did not contain it. With morph targets, changed weights of the instance select it too.
-// With KEEP, the clusters of the last frame are skinned once more, so that their last positions become their current positions.
+// selected if the last frame's level did not contain it. With morph targets, a change of the instance's weights also selects
+// the clusters that the targets move. With KEEP, the clusters of the last frame are skinned once more, so that their last
+// positions become their current positions.
 //
 // With FINISH, a thread stores the InstanceLod and weights of one instance for the next frame. With CLEAR, the thread also
 // clears the instance's updated bones. The first thread writes the arguments of the dispatch.
@@ -61,7 +62,7 @@ struct Dispatched {
 @group(0) @binding(3) var<storage, read> instance_lods: array<InstanceLod>;
 // Weights of the targets as bits, instance by instance.
 @group(0) @binding(4) var<storage, read> weights: array<u32>;
-// Index of each vertex's first delta, and at the end the number of deltas.
+// Index of each vertex's first delta. The last element is the number of deltas.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
 // State of each instance after the last frame: its InstanceLod, the number of frames for which it has been visible (at most 2),
 // and its weights.

@@ -1,17 +1,18 @@
 // Cone maps of a batch of height maps, computed from their max-mip pyramids. A thread computes the cone of one bilinear cell.
-// The cone stands upright on the cell's highest corner. It is as wide as possible while a ray inside it crosses the surface at
-// most once.
+// The cone stands upright on the cell's highest corner. It is made as wide as possible under one condition: a ray inside the
+// cone crosses the surface at most once.
 //
-// A ray that crosses the surface twice leaves it in between, at a place where the surface ahead falls faster than the ray. The
-// cone must therefore stay above every cell where a ray from this cell can leave the surface. The cone may cut through cells in
-// which the surface rises along every such ray (`rises`). The bounds hold for every point of both cells: they use smallest
-// distances and largest heights. Nodes are searched nearest first and skipped when they cannot narrow the cone. Nodes that look
-// small from the cell are treated as a whole, so that the search takes O(log N) per cell.
+// A ray that crosses the surface twice leaves the surface between the two crossings, at a place where the surface falls faster
+// than the ray. The cone must therefore stay above every cell where a ray from this cell can leave the surface. The cone may
+// cut through cells in which the surface rises along every such ray (`rises`). The bounds hold for all points of this cell and
+// of the other cell, because they use the smallest distances and the largest heights. Nodes are searched nearest first and
+// skipped when they cannot narrow the cone. Nodes that look small from the cell are treated as a whole, so that the search
+// takes O(log N) per cell.
 import package::wgsl::surface::ray::SURFACE_WRAP;
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index, surface_levels};
 
-// Ratio of distance to size from which on a node of the pyramid is treated as a whole. Larger values give wider cones and a
-// slower computation: 4 saves one load in 25 in a march, and takes 1.5 times as long to compute.
+// Ratio of distance to size at and above which a node of the pyramid is treated as a whole. Larger values give wider cones and
+// a slower computation. With 4, a march saves one load in 25, and the computation of the map takes 1.5 times as long.
 const OPENING: f32 = 2.0;
 
 // Parameters of the kernel `surface/cone_map`.
@@ -48,7 +49,7 @@ const NARROWING: f32 = 0.999999;
 // Largest number of nodes that a search visits; no search reaches it.
 const MAX_VISITS: u32 = 65536u;
 
-// Largest height below a node of a map's pyramid.
+// Largest height in a node of a map's pyramid.
 fn highest(map: u32, level: u32, node: vec2<i32>) -> f32 {
     let at = vec2<u32>(surface_atlas_at(params.cells, level, node));
     return pyramids[(map * params.rows + at.y) * params.pitch + at.x];
@@ -60,8 +61,8 @@ fn texel(map: u32, at: vec2<i32>) -> f32 {
 }
 
 // Largest radius for which the cone stays above the corners of a leaf that is `offset` cells away. `own` is the height of the
-// cone's tip. Over a cell, the difference of the bilinear patch and a plane is largest at a corner. The distance is at least
-// the distance along the line to the cell's center.
+// cone's tip. The corners suffice, because over a cell, the difference of the bilinear patch and a plane is largest at a
+// corner. A corner's distance is bounded from below by its distance along the line to the leaf's center.
 fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
     let away = vec2<f32>(abs(offset));
     let center = max(away - 0.5, vec2<f32>(0.0));
@@ -69,7 +70,7 @@ fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
     // Distances from the nearest edge of the own cell to the near edge and to the far edge of the leaf.
     let near = max(away - 1.0, vec2<f32>(0.0)) * direction;
     let far = away * direction;
-    // The corners are selected by sign, because the position of the leaf decides which side is near.
+    // The sign of the offset decides which side of the leaf is near.
     let x = select(vec2<f32>(near.x, far.x), vec2<f32>(far.x, near.x), offset.x < 0);
     let y = select(vec2<f32>(near.y, far.y), vec2<f32>(far.y, near.y), offset.y < 0);
     let distances = vec4<f32>(x.x + y.x, x.y + y.x, x.x + y.y, x.y + y.y);

@@ -16,8 +16,8 @@ struct ShadeView {
     eye: vec4<f32>,
     // Number of heights that a soft shadow samples on the path to the light, 1 to `MAX_STEPS`.
     shadow_steps: u32,
-    // Softness of a soft shadow, 0.001 to 1000: the ratio of the surface's height above the path to the light to its distance
-    // at which shadow is full.
+    // Softness of a soft shadow, 0.001 to 1000: the shadow is full where the surface rises above the light's path by at least
+    // this factor times the distance from the shaded point.
     softness: f32,
 }
 

@@ -11,13 +11,14 @@ struct TangentParams {
 @group(0) @binding(0) var<uniform> params: TangentParams;
 // Positions, three floats per vertex.
 @group(0) @binding(1) var<storage, read> positions: array<f32>;
-// Normals as bits, three words per vertex. They need not be finite, and a shader may assume that floats are finite.
+// Normals, three words per vertex. They are read as bits, because normals may be infinite or NaN, and a shader may assume that
+// floats are finite.
 @group(0) @binding(2) var<storage, read> normals: array<u32>;
 // Texture coordinates, two floats per vertex.
 @group(0) @binding(3) var<storage, read> texture_coordinates: array<f32>;
 // Indices of the triangles' vertices, three per triangle.
 @group(0) @binding(4) var<storage, read> indices: array<u32>;
-// Index in `corners` of each vertex's first corner, and at the end the number of corners.
+// Index in `corners` of each vertex's first corner. The last element is the number of corners.
 @group(0) @binding(5) var<storage, read> offsets: array<u32>;
 // Corners of each vertex, as positions in `indices`.
 @group(0) @binding(6) var<storage, read> corners: array<u32>;
@@ -28,14 +29,14 @@ struct TangentParams {
 const LEAST: f32 = 7.888609052210118e-31;
 // Bits of the f32 `LEAST`.
 const LEAST_BITS: u32 = 0x0d800000u;
-// Bits of the f32 2^100. A normal with a larger component counts as without direction.
+// Bits of the f32 2^100. A normal with a larger component counts as a vector without direction.
 const LARGEST_BITS: u32 = 0x71800000u;
-// A triangle contributes nothing if its area, its tangent or its area in uv is no larger than this. All three are measured
-// after the triangle is scaled to a box of edge 1, and in uv each direction separately. Errors of f32 are at most a sixteenth
-// of this value: they rotate a tangent of this length by less than four degrees.
+// A triangle contributes nothing if its area, its tangent or its area in uv is no larger than this. Before the measurement, the
+// triangle is scaled to a box of edge 1, and its uv coordinates to a square of edge 1, u and v separately. Errors of f32 are at
+// most a sixteenth of this value: they rotate a tangent of this length by less than four degrees.
 const DEGENERATE: f32 = 1.0 / 16384.0;
-// A sum of tangents counts as 0 if its component orthogonal to the normal is no longer than this fraction of the weights. The
-// handedness is negative if its sum is below minus this fraction of the weights.
+// A sum of tangents counts as 0 if its component orthogonal to the normal is no longer than this fraction of the sum of
+// weights. The handedness is -1 if the sum of handedness values is below minus this fraction of the sum of weights.
 const VANISHING: f32 = 1.0 / 64.0;
 
 // Contribution of one triangle to the tangent of a vertex.
@@ -134,7 +135,7 @@ fn frame(vertex: u32) -> vec4<f32> {
         return vec4<f32>(fallback(normal, (bits.z >> 31u) == 1u), 1.0);
     }
     let tangent = unit(flat);
-    // The projection is repeated: if little was left of the sum, its rounding error is large.
+    // The projection is repeated, because its rounding error is large if the sum is nearly parallel to the normal.
     let orthogonal = unit(tangent - normal * dot(normal, tangent));
     return vec4<f32>(orthogonal, select(1.0, -1.0, handedness < -least));
 }

@@ -1,5 +1,5 @@
-// Colour map of patches, seen from above: the ground's textures by zones (B equations 3.6 and 3.7) and hill-shading, one sRGB
-// pixel per sample. The kernel reads windows that extend one sample beyond the patch.
+// Colour map of patches, seen from above, with one sRGB pixel per sample: the textures of the ground, blended by zones (B
+// equations 3.6 and 3.7), with hill-shading. The kernel reads windows that extend one sample beyond the patch.
 import package::wgsl::terrain::fixed::HEIGHT_ONE;
 import package::wgsl::terrain::light::{Light, lit};
 import package::wgsl::terrain::slope::slope_normal;
@@ -24,7 +24,7 @@ struct MapParams {
     planes: u32,
     // Number of texture tiles per sample, in 2^-22 tiles.
     tiles_per_sample: u32,
-    // Number of texture tiles per unit of height, in 2^-22 tiles.
+    // Number of texture tiles per world unit of height, in 2^-22 tiles.
     tiles_per_unit: u32,
     // Strength of the colour variation, 0 to 1.
     variation: f32,
@@ -67,7 +67,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         blend = zone_blended(blend, map_zone.zone, height, steep, texel);
     }
-    // An f32 holds 14 fractional bits exactly.
+    // An f32 holds the 10 integer bits and 14 fractional bits of a position exactly.
     let variation = color_variation(vec2<f32>(tiles.xz >> vec2<u32>(8u)) / 16384.0);
     let albedo = varied(zone_color(blend, params.additive != 0u), variation, params.variation);
     pixels[inner_index(params.width, id)] = pack4x8unorm(vec4<f32>(srgb(lit(params.light, normal, albedo)), 1.0));
@@ -79,8 +79,9 @@ fn texel_at(index: u32) -> vec4<f32> {
     return vec4<f32>(unpack2x16unorm(texel.x), unpack2x16unorm(texel.y));
 }
 
-// sRGB transfer function, within 1/100 of a level of 255. A minimax polynomial in the fourth root of x replaces 1.055 x^(1/2.4)
-// − 0.055. Its largest error from 0.0031308 to 1 is 3.4e-5. Software adapters take six times as long for a power.
+// sRGB transfer function, with an error of at most 1/100 of a level of 255. A minimax polynomial in the fourth root of x
+// replaces 1.055 x^(1/2.4) − 0.055. Its largest error from 0.0031308 to 1 is 3.4e-5. On software adapters, a power function
+// takes six times as long.
 fn srgb(linear: vec3<f32>) -> vec3<f32> {
     let bounded = clamp(linear, vec3<f32>(0.0), vec3<f32>(1.0));
     let root = sqrt(sqrt(bounded));

@@ -1,7 +1,7 @@
 // A cycle of hydraulic erosion of windows (virtual pipes after Mei, Decaudin and Hu 2007, in integers). Each sample has ground,
 // water, and suspended sediment. It also has shares: the fractions of water and sediment that leave for its four neighbours. A
-// cycle moves these shares, lets ground creep and banks slide, erodes or deposits, evaporates and rains. It computes the next
-// shares from the surfaces before the cycle. All transport between two samples is computed from the old state alone. Each
+// cycle moves these shares, lets ground creep and banks slide, erodes or deposits, evaporates and rains. The next shares are
+// computed from the surfaces before the cycle. All transport between two samples is computed from the old state alone. Each
 // window loses its outermost ring of samples.
 import package::wgsl::terrain::fixed::HEIGHT_LIMIT;
 import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
@@ -116,8 +116,8 @@ fn cycle(own: Cell, west: Cell, east: Cell, north: Cell, south: Cell) -> Cell {
     let carried = capacity(discharge(sum(water_gone + water_come) >> 1u, eighths), slope(falls));
     let lifted = lifted(steps, moved, carried - suspended);
     let next_water = min(moved - part_of(moved, params.evaporation) + params.rain, WATER_LIMIT);
-    // A pipe keeps half of its flux and adds a sixteenth of the fall. Also, a thirty-second of the water, at most the
-    // threshold, spreads through each pipe. Streams then do not run along rows and columns.
+    // A pipe keeps half of its flux and adds a sixteenth of the fall. In addition, a thirty-second of the water, at most the
+    // threshold, spreads through each pipe. This keeps streams from running along rows and columns.
     let spread = min(next_water >> 5u, params.threshold);
     let flux = leaving - (leaving >> vec4<u32>(1u)) + (falls >> vec4<u32>(4u)) + spread;
     let bounded = clamp(flux, vec4<i32>(0), vec4<i32>(WATER_LIMIT));
@@ -149,8 +149,9 @@ fn ground_room(ground: vec4<i32>, sediment: vec4<i32>) -> vec4<i32> {
     return (HEIGHT_LIMIT - ground - sediment) >> vec4<u32>(3u);
 }
 
-// Discharge around a sample: a quarter of the sample's own, and three quarters of the mean outflow of its neighbours. `eighths`
-// is the sum of an eighth of each outflow. Streams are therefore wider than a sample, and do not favour a direction.
+// Discharge around a sample: a quarter of the sample's discharge `own`, and three quarters of the mean outflow of its
+// neighbours. `eighths` is the sum of an eighth of each outflow. Streams are therefore wider than a sample, and do not favour a
+// direction.
 fn discharge(own: i32, eighths: i32) -> i32 {
     return (own >> 2u) + eighths + (eighths >> 1u);
 }
@@ -169,14 +170,14 @@ fn capacity(discharge: i32, slope: i32) -> i32 {
     let driving = clamp(discharge - params.threshold, 0, WATER_LIMIT);
     let high = driving >> 12u;
     let low = ((driving & 4095) * rate) >> 12u;
-    // `high >> 14` is 1 at the largest discharge. Without it, the largest product would be 2^32.
+    // `high >> 14` is 1 at the largest discharge. Without this term, the largest product would be 2^32, which overflows.
     let product = u32(high) * u32(min(rate, 0x40000 - (high >> 14u)));
     return i32(min(product + u32(low), u32(SEDIMENT_LIMIT)));
 }
 
 // Amount of ground that goes into suspension; if negative, the sediment that settles. `steps` has the height differences to the
-// neighbours, positive for lower neighbours. Ground sinks no deeper than its lowest neighbour, and rises no higher than its
-// highest neighbour or the water.
+// neighbours, positive for lower neighbours. `lacking` is the sediment capacity minus the suspended sediment. Ground sinks no
+// deeper than its lowest neighbour, and rises no higher than its highest neighbour or the water.
 fn lifted(steps: vec4<i32>, water: i32, lacking: i32) -> i32 {
     if lacking > 0 {
         let deepest = max(max(max(steps.x, steps.y), max(steps.z, steps.w)), 0);

@@ -43,7 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-// Tile (column, row), among the nine tiles of a window, whose patch provides the samples of a given tile. In order of
+// Tile (column, row) whose patch provides the samples of `tile`. Both tiles are among the nine tiles of a window. In order of
 // preference: the tile itself, its neighbour in x, its neighbour in y, the patch in the middle.
 fn provider_of(window: u32, tile: vec2<i32>) -> vec2<i32> {
     if around_at(window, tile) != NONE {

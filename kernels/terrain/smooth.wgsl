@@ -4,8 +4,8 @@
 import package::wgsl::terrain::fixed::{four_point, limited, mean_of_two};
 import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 
-// Number of points on every side for which features are listed in addition to `terrain/height`. Edges of a window depend on
-// centers up to three points outside the window.
+// Number of points by which the listed features extend further on every side than for `terrain/height`. Edges of a window
+// depend on centers up to three points outside the window.
 const FEATURE_SHIFT = 2;
 
 // Heights along a row of coarse points, around one of the points.
@@ -23,7 +23,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let window = id.z;
     // The coarse window begins three coarse points before the coarse point at the fine window's first sample. If no coarse
-    // point is there, the last one before it counts.
+    // point is at this sample, the last coarse point before the sample takes its place.
     let cell = vec2<i32>(id.xy) + 3;
     let at = 2 * vec2<i32>(id.xy) - (origins[window] & vec2<i32>(1));
     // Coarse rows from three above the own row to three below.
@@ -57,8 +57,8 @@ fn row_of(window: u32, cell: vec2<i32>) -> Row {
     return Row(before.w, between(before, coarse_points(window, cell.x + vec4<i32>(1, 2, 3, 3), y)));
 }
 
-// Interpolated values between the middle two of each four consecutive values, for seven values in all. The last lane of `after`
-// is unused.
+// Four interpolated values from seven consecutive values. Each lies between the middle two of four consecutive values. The last
+// lane of `after` is unused.
 fn between(before: vec4<i32>, after: vec4<i32>) -> vec4<i32> {
     return four_point(
         before, vec4<i32>(before.yzw, after.x), vec4<i32>(before.zw, after.xy), vec4<i32>(before.w, after.xyz));

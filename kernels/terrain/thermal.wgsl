@@ -1,5 +1,5 @@
 // One iteration of thermal erosion. Between each pair of 4-neighbours, an eighth of the height difference above the threshold
-// slides downhill. All pairs read the same old heights. Each window loses its outermost ring of samples.
+// slides downhill. All pairs use the heights before the iteration. Each window loses its outermost ring of samples.
 import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 
 // Parameters of the kernel `terrain/thermal`.

@@ -29,7 +29,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // Adds random offsets to four means, and injects features. (x, y) are the positions of the points in the patch. The patch's
-// last row and column have the world coordinates of the first.
+// last row and column have the world coordinates of the first row and column.
 fn drawn(patch_index: u32, x: vec4<i32>, y: vec4<i32>, means: vec4<i32>) -> vec4<i32> {
     let origin = origins[patch_index];
     let mask = vec4<i32>(i32(level.fine_width) - 2);

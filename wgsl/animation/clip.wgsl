@@ -34,8 +34,8 @@ struct KeyframeCursor {
     fraction: f32,
 }
 
-// Cursor that is stored in two words. Sampling loads both words in one memory operation, which decides its speed on CPUs. The
-// members of a struct would take one operation each.
+// Cursor that is stored in two words. Sampling loads both words in one memory operation. The members of a struct would take one
+// operation each, and on CPUs, the number of memory operations decides the speed of sampling.
 fn cursor_of_words(words: vec2<u32>) -> KeyframeCursor {
     return KeyframeCursor(words.x, bitcast<f32>(words.y));
 }

@@ -3,7 +3,7 @@
 // Wrap code of an instance whose times outside the clip are clamped to the clip's start and end. Code 0 loops.
 const WRAP_CLAMP = 1u;
 
-// Number of loops from which on an f32 cannot resolve a position in a clip.
+// Number of loops at and beyond which an f32 cannot resolve a position in a clip.
 const MAX_TURNS: f32 = 16777216.0;
 
 // Converts a time in clip seconds, which may be negative, to seconds since the clip's start, 0 to `duration`. A looping clip
@@ -15,7 +15,7 @@ fn inside_clip(wrap: u32, duration: f32, time: f32) -> f32 {
     if wrap == WRAP_CLAMP {
         return min(max(time, 0.0), duration);
     }
-    // The comparison is false for NaN, so that NaN gives 0 too.
+    // The comparison is false for NaN, so NaN also gives 0.
     if !(abs(time) < MAX_TURNS * duration) {
         return 0.0;
     }

@@ -1,4 +1,4 @@
-// State of each instance that gates read.
+// Per-instance state that gates read.
 //
 // Progress word of `ClipClock::fraction_and_reason`: the fraction of the interval to the next row, and the update reason.
 // packed Progress: fraction 20, reason 12

@@ -1,5 +1,5 @@
-// Allowed displacement: the largest distance between the drawn and the exact surface that a view permits. Levels, gates and
-// influences all derive their limits from this formula, which starts from an error in pixels. `src/lod/allowed.rs` is the
+// Allowed displacement: the largest distance between the drawn and the exact surface that a view permits. It is computed from
+// the allowed error in pixels. The limits of levels, gates and influences are all derived from it. `src/lod/allowed.rs` is the
 // reference.
 import package::wgsl::lod::view::{LodCamera, POSITION_SLACK};
 

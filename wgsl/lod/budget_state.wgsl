@@ -1,6 +1,6 @@
 // State of a triangle budget: how much the budget coarsens the levels of detail of its objects.
 struct BudgetState {
-    // Factor per rank that multiplies the metric of levels, 1 or more. Elements from `NO_RANK` on are 1.
+    // Factor per rank, 1 or more. It multiplies the metric by which levels are chosen. Elements from `NO_RANK` on are 1.
     factors: array<vec4<f32>, 3>,
     // 1 if all fades end in this frame, because the budget cannot hold both levels of every fade; else 0.
     ends_fades: u32,
@@ -8,7 +8,7 @@ struct BudgetState {
     is_missed: u32,
     // Number of triangles drawn, in units of the budget. An instance that fades counts with both levels.
     triangles: u32,
-    // Degree of coarsening: the index of a part of a bin of the budget's histogram. Parts are ordered by rank. Within a rank, the
-    // index is proportional to the logarithm of the factor.
+    // Degree of coarsening: the index of a part in the budget's histogram. The histogram has one range of parts per rank, in
+    // the order of ranks. Within a range, the index is proportional to the logarithm of the rank's factor.
     pressure: u32,
 }

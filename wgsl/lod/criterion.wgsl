@@ -14,9 +14,9 @@ const CRITERION_DISTANCE = 1u;
 const CRITERION_POINT = 2u;
 // Criterion: the metric is the distance from the eye to the nearest point of the model's box, in world units.
 const CRITERION_NEAREST = 3u;
-// Criterion: the metric is the square root of the viewport's area per projected area of the model's box.
+// Criterion: the metric is the square root of the ratio of the viewport's area to the projected area of the model's box.
 const CRITERION_BOX = 4u;
-// Criterion: the metric is the square root of the viewport's area per projected area of the bounding sphere.
+// Criterion: the metric is the square root of the ratio of the viewport's area to the projected area of the bounding sphere.
 const CRITERION_SPHERE = 5u;
 // Criterion: the metric is the number of world units per pixel at the middle of the bounding sphere (B equation 3.3).
 const CRITERION_MAGNIFICATION = 6u;
@@ -72,8 +72,8 @@ fn box_area(object: LodObject, placed: Placed, camera: LodCamera) -> f32 {
         let two = (axis + 2u) % 3u;
         let across = object.half_size[one] * axis_of(placed.axes, one);
         let along = object.half_size[two] * axis_of(placed.axes, two);
-        // Of two opposite faces, only the face turned towards the eye counts. If the eye lies between their planes, no face
-        // counts.
+        // Only one of two opposite faces counts: the face turned towards the eye. If the eye lies between their planes, neither
+        // face counts.
         let normal = cross(across, along);
         var offset = dot(normal, camera.eye - middle);
         if camera.perspective == 0.0 {
@@ -146,7 +146,7 @@ fn criterion_metric(object: LodObject, camera: LodCamera, placed: Placed, allowe
     }
 }
 
-// Metric of an area on screen: the square root of the viewport's area divided by `area`, both in pixels.
+// Metric of an area on screen: the square root of the ratio of the viewport's area to `area`, both in pixels.
 fn metric_of_area(camera: LodCamera, area: f32) -> f32 {
     return min(sqrt(camera.pixel_count / max(area, 1e-30)), MAX_METRIC);
 }

@@ -11,7 +11,7 @@ const INSTANCE_CASTS = 2u;
 // Instance flag: the instance is a character with an attached mesh. Its bones are sampled in every frame in which a view sees
 // the character.
 const INSTANCE_CARRIES = 4u;
-// Instance flag: the instance is a mesh that is attached to a bone. Its placement exists only as rows in a view.
+// Instance flag: the instance is a mesh that is attached to a bone. Its placement is stored only per view, as rows of a matrix.
 const INSTANCE_FOLLOWS = 8u;
 // Word of `SceneInstance.flags`: the instance flags, and the visibility mask.
 // packed InstanceFlags: bits 16, mask 16

@@ -1,8 +1,8 @@
 // Objects of a scene. All instances of one model share an object.
 //
-// Flags word of an object. `shown`: the object is visible. `never_culled`: its instances are drawn outside the view volume too.
-// `timed`: its transition runs in time. `transition` is a constant of `wgsl/lod/transition.wgsl`, `criterion` a constant of
-// `wgsl/lod/criterion.wgsl`.
+// Flags word of an object. `shown`: the object is visible. `never_culled`: its instances are also drawn outside the view
+// volume. `timed`: its transition advances with time, not with the metric. `transition` is a constant of
+// `wgsl/lod/transition.wgsl`, `criterion` a constant of `wgsl/lod/criterion.wgsl`.
 // packed ObjectFlags: shown 1, never_culled 1, timed 1, transition 4, criterion 4
 // Metric word of an instance in a view: the bits of its metric without the sign bit, and whether its placement mirrors.
 // `UNSEEN_METRIC` means that the view does not see the instance.
@@ -20,8 +20,8 @@
 
 // Largest number of levels of detail of an object, the finest included.
 const OBJECT_LEVELS = 8u;
-// Largest number of lists of an object in a view. Each level has four lists: unmirrored and mirrored instances, and both again
-// for instances that fade (`fading_list`).
+// Largest number of lists of an object in a view. Each level has four lists: unmirrored and mirrored instances, each without a
+// fade (`solid_list`) and with a fade (`fading_list`).
 const OBJECT_LISTS = 32u;
 // Number of instances in a block. The instances of each object occupy whole blocks.
 const BLOCK = 64u;
@@ -65,18 +65,19 @@ struct LodObject {
     // Threshold per level, ascending: the smallest metric at which the level is drawn. Without a geomorph, the first threshold
     // is 0. With a geomorph, a level begins to move towards the next one at its threshold, so the first threshold is above 0.
     thresholds: array<vec4<f32>, 2>,
-    // Factor of the thresholds of levels up to the last frame's level. Between the thresholds scaled by `finer` and by
-    // `coarser`, an instance keeps its level (hysteresis), or fades from one level to the next.
+    // Factor for the thresholds of the last frame's level and of finer levels. While the metric is between a threshold times
+    // `finer` and this threshold times `coarser`, an instance keeps its level (hysteresis), or fades from one level to the
+    // next.
     finer: f32,
-    // Factor of the thresholds of levels that are coarser than the last frame's level.
+    // Factor for the thresholds of levels that are coarser than the last frame's level.
     coarser: f32,
     // Steps per second of a fade that runs in time; a whole fade has `FADE_PROGRESS` steps.
     rate: f32,
-    // Growth of the metric with an instance's speed on screen, per picture height per second; 0 for none.
+    // Relative growth of the metric with an instance's speed on screen, per picture height per second; 0 for none.
     motion: f32,
     // Middle of the model's box, or the point to which distances are measured, in model space.
     point: vec3<f32>,
-    // Growth of the metric with an instance's distance from the picture's middle, per half picture height; 0 for none.
+    // Relative growth of the metric with an instance's distance from the picture's middle, per half picture height; 0 for none.
     periphery: f32,
     // Half the size of the model's box along the model's axes.
     half_size: vec3<f32>,
@@ -87,8 +88,8 @@ struct LodObject {
     fade_begin: f32,
     // Metric at which instances have faded out, with `TRANSITION_ALPHA`.
     fade_end: f32,
-    // Added to the metric, times a budget's factor minus 1. With this term, the largest factor reaches every level even from a
-    // metric of 0.
+    // Factor of a term that is added to the metric: `metric_floor` times (a budget's factor minus 1). With this term, the
+    // largest factor reaches every level even from a metric of 0.
     metric_floor: f32,
     // Padding, not read.
     unused: u32,

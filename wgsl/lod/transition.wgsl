@@ -75,7 +75,8 @@ fn morphing(object: LodObject, metric: f32, mirrored: u32) -> u32 {
 
 // Decision word for a fade to the next coarser level while the metric passes the band around the threshold.
 fn fading_in_band(object: LodObject, metric: f32, mirrored: u32) -> u32 {
-    // The coarsest level whose band the metric has passed. The finest level as the last level selects the bands' upper ends.
+    // The coarsest level whose band the metric has passed. With 0 as the last level, all thresholds are the upper ends of the
+    // bands.
     let level = level_within(object, metric, 0u);
     if level + 1u >= min(object.levels, OBJECT_LEVELS) {
         return settled(level, mirrored);
@@ -120,8 +121,8 @@ fn coarsened(object: LodObject, metric: f32, factor: f32) -> f32 {
     return factor * metric + (factor - 1.0) * object.metric_floor;
 }
 
-// Level of the last frame that hysteresis holds. It is `NO_LEVEL` for geomorphs and for fades in a band, which depend on this
-// frame alone.
+// Level of the last frame that hysteresis holds. It is `NO_LEVEL` for geomorphs and for fades in a band, because these depend
+// only on this frame.
 fn held_level(object: LodObject, last: u32) -> u32 {
     let transition = object_flags_transition(object.flags);
     let is_fading = transition >= TRANSITION_DITHER && transition <= TRANSITION_TWO_PHASE;
@@ -239,7 +240,7 @@ struct SortedEntry {
 }
 
 // List entry of a visible instance that has a draw of its own. The instance may morph or fade out. A fade between two levels is
-// replaced by a change at its middle.
+// replaced by an abrupt change halfway through the fade.
 fn sorted_entry(object: LodObject, decision: u32, index: u32) -> SortedEntry {
     let steps = decision_steps(decision);
     let transition = object_flags_transition(object.flags);

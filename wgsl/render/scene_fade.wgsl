@@ -13,8 +13,8 @@ const FADE_DITHER = 1u;
 const FADE_BLEND = 2u;
 // Fade method: an instance is drawn if its weight is more than half of `FADE_STEPS`.
 const FADE_HEAVIER = 3u;
-// Fade method for depth: an instance is pushed away from the eye. The depth then hides the inside of both levels of a
-// cross-fade, but neither surface.
+// Fade method for depth: surfaces are pushed away from the eye. The pushed depth hides the interior of both levels of a
+// cross-fade, but does not hide their outer surfaces.
 const FADE_PUSHED = 4u;
 
 // Word that the vertex shader passes on after the kind's own words. It holds the instance, its fade word, its level, and

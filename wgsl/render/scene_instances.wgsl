@@ -1,4 +1,4 @@
-// Placements in a view of the instances that are drawn, in this frame and in the last one.
+// Placements of the drawn instances in a view, in this frame and in the last frame.
 import package::wgsl::lod::instance::{INSTANCE_FOLLOWS, SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::object::{list_entry_instance, list_entry_level};
 import package::wgsl::render::scene_fade::{FADE, FADE_PUSHED};
@@ -8,8 +8,8 @@ import package::wgsl::render::scene_view::view;
 import package::wgsl::skinning::rows::{Rows, placed_normal, placed_position};
 
 // Per instance of the scene, three rows: the transform from model space to positions relative to the corner of the view's cell.
-// Valid for instances that the view sees. If the scene keeps its last frame, one transform per instance of that frame follows,
-// valid for meshes attached to bones.
+// These transforms are valid for instances that the view sees. If the scene keeps its last frame, a second set follows: one
+// transform per instance of the last frame, valid for meshes attached to bones.
 @group(0) @binding(1) var<storage, read> placements: array<array<vec4<f32>, 3>>;
 // All instances of the scene.
 @group(0) @binding(2) var<storage, read> instances: array<SceneInstance>;
@@ -50,8 +50,8 @@ fn instance_placement(index: u32) -> Rows {
     return Rows(placements[index][0], placements[index][1], placements[index][2]);
 }
 
-// Transform of an instance in the last frame, from model space to positions relative to the corner of this frame's cell. A mesh
-// that was attached to a bone then, but is not now, gets its current placement.
+// Transform of an instance in the last frame, from model space to positions relative to the corner of this frame's cell. If a
+// mesh was attached to a bone in the last frame but is not attached now, the result is its current placement.
 fn last_placement(index: u32) -> Rows {
     let instance = last_instances[index];
     if (instance.flags & INSTANCE_FOLLOWS) != 0u {
@@ -90,8 +90,8 @@ fn rows_to_last(index: u32) -> Rows {
         vec4<f32>(x, moved.x - dot(x, at)), vec4<f32>(y, moved.y - dot(y, at)), vec4<f32>(z, moved.z - dot(z, at)));
 }
 
-// Position of a point in the last frame, relative to the corner of the view's cell. `position` is where the point was in model
-// space in that frame.
+// Position of a point in the last frame, relative to the corner of the view's cell. `position` is the point's position in model
+// space in the last frame.
 fn scene_last_placed(entry: u32, position: vec3<f32>) -> vec3<f32> {
     return placed_position(last_placement(instance_index(entry)), position);
 }
@@ -117,7 +117,7 @@ fn pushed_position(entry: u32, placement: Rows, position: vec3<f32>) -> vec3<f32
 }
 
 // Vertex in the placement of a list entry's instance. The arguments are in model space; `tangent.w` is the sign of the
-// bitangent there.
+// bitangent in model space.
 fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec4<f32>, uv: vec4<f32>) -> SceneVertex {
     let placement = instance_placement(instance_index(entry));
     let along = vec3<f32>(

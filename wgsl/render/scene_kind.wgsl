@@ -1,6 +1,6 @@
 // The interface between kinds of objects and outputs. A kind exports `KIND_place(entry, vertex) -> SceneVertex`,
-// `KIND_last_position(entry, vertex) -> vec3<f32>` and `KIND_surface(SceneFragment) -> Surface`. The last function never
-// discards and runs in uniform control flow. `build/entries.rs` generates the entry points.
+// `KIND_last_position(entry, vertex) -> vec3<f32>` and `KIND_surface(SceneFragment) -> Surface`. `KIND_surface` never discards
+// and runs in uniform control flow. `build/entries.rs` generates the entry points.
 import package::wgsl::render::scene_fade::{entry_word, faded_alpha, scene_word_counter_clockwise, scene_word_instance, scene_word_level};
 import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_view::view;
@@ -11,8 +11,8 @@ struct SceneVertex {
     position: vec3<f32>,
     // Outward normal, not normalized but never 0.
     normal: vec3<f32>,
-    // Direction of u (xyz), not normalized but never 0. w is the sign of the bitangent, the direction of v: w · normal ×
-    // tangent of the unit vectors.
+    // Direction of u (xyz), not normalized but never 0. w is the sign of the bitangent, which is the direction of v. The
+    // bitangent is w · normal × tangent, computed from unit vectors.
     tangent: vec4<f32>,
     // Two sets of texture coordinates: xy and zw.
     uv: vec4<f32>,

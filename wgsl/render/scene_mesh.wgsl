@@ -8,7 +8,7 @@ import package::wgsl::render::scene_shade::Surface;
 import package::wgsl::render::scene_vertex::{material_of, placed_vertex};
 import package::wgsl::surface::dither::surface_dither_threshold;
 
-// Whether the mesh is seen from both sides. Back faces then reverse their normals.
+// Whether the mesh is seen from both sides. If true, back faces reverse their normals.
 override DOUBLE_SIDED: bool = false;
 // Whether one of the part's materials has a texture.
 override TEXTURED: bool = false;

@@ -4,7 +4,7 @@ import package::wgsl::render::scene_instances::{entry_instance, instance_index, 
 import package::wgsl::render::scene_vertex::{MORPHED, VertexMorph, material_of, mesh, morphed, partner_index, partner_level, vertex_index_of, vertex_morph, vertices, way_of};
 import package::wgsl::skinning::vertex::vertex_position;
 
-// Per instance of the scene: the view's decision word in the last frame. It is 0 if the view did not see the instance then.
+// Per instance of the scene: the view's decision word in the last frame; 0 if the view did not see the instance in that frame.
 @group(0) @binding(6) var<storage, read> last_decisions: array<u32>;
 
 // Position of an instance's vertex in the last frame, in model space and without its morph.
@@ -16,15 +16,15 @@ fn last_local(instance: u32, vertex: u32) -> vec3<f32> {
 
 // Morph of a vertex between levels in the last frame.
 struct LastMorph {
-    // Vertex that replaced this vertex in the level drawn then.
+    // Vertex that stood in for this vertex, in the level that was drawn in the last frame.
     standing: u32,
     // Morph of the vertex `standing`.
     to: VertexMorph,
 }
 
-// Morph of a vertex in the last frame. If the level was coarser then, the vertex was at the position of the vertex that had
-// replaced it. If the level was finer, the vertex had not morphed. An instance that the view did not see then counts with its
-// current level.
+// Morph of a vertex in the last frame. If the level of the last frame was coarser, the vertex was at the position of the vertex
+// that replaces it in that level. If the level of the last frame was finer, the vertex had not morphed. If the view did not see
+// the instance in the last frame, the vertex counts with its current morph.
 fn last_morph(entry: u32, vertex: u32) -> LastMorph {
     let decision = last_decisions[instance_index(entry)];
     if decision == 0u || mesh.partners == 0u {

@@ -26,7 +26,8 @@ override GREEN_UP: bool = true;
 override SILHOUETTE: bool = false;
 // Whether to choose the mip level of the heights from the size of a pixel, once per fragment.
 override CHOOSE_MIP: bool = false;
-// Lower bound of the cosine between the light and the polygon's normal. It bounds the light's path out of the relief volume.
+// Lower bound of the cosine between the light and the polygon's normal. It limits the length of the light's path in the relief
+// volume.
 const LEAST_COSINE: f32 = 0.05;
 
 // Parameters of a relief. The relief's maps have bindings of their own.
@@ -43,7 +44,8 @@ struct ReliefParams {
     world: f32,
     // Number of steps of a soft shadow.
     shadow_steps: u32,
-    // Softness of a soft shadow: the ratio of excess height to distance at which shadow is full.
+    // Softness of a soft shadow: the shadow is full where the surface rises above the light's path by at least this factor
+    // times the distance from the shaded point.
     softness: f32,
 }
 
@@ -130,8 +132,8 @@ fn in_world(frame: Frame, direction: vec3<f32>) -> vec3<f32> {
     return direction.x * frame.tangent + direction.y * frame.bitangent + direction.z * frame.normal;
 }
 
-// Point where the ray from a hit towards the sun leaves the relief volume. Below this point the relief shades itself; above it,
-// other objects do.
+// Point where the ray from a hit towards the sun leaves the relief volume. Below this point, the relief can shade itself; above
+// it, only other objects can shade the relief.
 fn above(in: SceneFragment, found: Traced) -> vec3<f32> {
     let cosine = dot(found.frame.normal, view.light.xyz);
     let deep = (1.0 - found.hit.height) * relief.scale * in.values.x;

@@ -34,8 +34,8 @@ fn scene_sunlit(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     return 1.0 - fade * (1.0 - shadow_filtered(uv, clamp(depth, 0.0, 1.0)));
 }
 
-// Weighted fraction of 4 × 4 shadow map texels that are not nearer to the sun than `depth`. Along each axis, the weights are 1
-// − s, 2 − s, 1 + s and s, where s is the offset from the second texel's center. Four bilinear samples cover all 16 texels
+// Weighted fraction of 4 × 4 shadow map texels that are not nearer to the sun than `depth`. Along each axis, the weights are
+// 1 − s, 2 − s, 1 + s and s, where s is the offset from the second texel's center. Four bilinear samples cover all 16 texels
 // (Castaño 2013).
 fn shadow_filtered(uv: vec2<f32>, depth: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(shadow_map));

@@ -17,7 +17,7 @@ const LINE_COLOR: vec3<f32> = vec3<f32>(0.35, 0.75, 0.5);
 const DARK_COLOR: vec3<f32> = vec3<f32>(0.01, 0.014, 0.02);
 
 // Placement of a terrain's samples in a view. Positions are relative to a sample near the view, so that they are precise far
-// from the terrain's origin. A sample that several patches share has the same bits in each of them.
+// from the terrain's origin. A sample that several patches share has bit-identical positions in all of them.
 struct TerrainView {
     // Column and row of the sample to which positions are relative.
     base: vec2<i32>,
@@ -80,9 +80,9 @@ struct TerrainPatch {
 // Sampler of the zone textures.
 @group(2) @binding(5) var texture_sampler: sampler;
 
-// Places a vertex of a patch. A sample gives the same bits in all patches, so that patches that share an edge leave no crack.
-// Values of the result: barycentric coordinates (xyz: 1 at one corner of each triangle, 0 at the others), and the height in
-// world units (w).
+// Places a vertex of a patch. A sample gets bit-identical positions in all patches, so that patches that share an edge leave no
+// crack. Values of the result: barycentric coordinates (xyz: 1 at one corner of each triangle, 0 at the others), and the height
+// in world units (w).
 fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let patch_of = patches[instance];
     let at = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
@@ -96,7 +96,7 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let sample_index = vec2<f32>(patch_of.origin + vec2<i32>(at) - ground.base);
     let position = ground.rest
         + vec3<f32>(sample_index.x * terrain.spacing, height, sample_index.y * terrain.spacing);
-    // A vertex is the same corner of all triangles of a patch that contain the vertex.
+    // In all triangles of a patch that contain a vertex, the vertex has the same corner number, 0 to 2.
     var values = vec4<f32>(0.0, 0.0, 0.0, height);
     values[(at.x + 2u * at.y) % 3u] = 1.0;
     return SceneVertex(

@@ -17,7 +17,7 @@ struct MeshParams {
     // Number of clusters of the mesh if each instance has vertices of its own, in pages. 0 if all instances share the mesh's
     // vertices.
     clusters: u32,
-    // Index in `vertices` of the last frame's positions, two pairs per vertex in pages. 0 if vertices do not move.
+    // Index in `vertices` of the last frame's positions: two pairs of floats per vertex in pages. 0 if vertices do not move.
     last: u32,
     // Index of the first partner word in `material_of`; 0 if the mesh has no partners.
     partners: u32,
@@ -46,7 +46,7 @@ fn vertex_index_of(instance: u32, vertex: u32) -> u32 {
 
 // Morph of a vertex towards the next coarser level.
 struct VertexMorph {
-    // Index of the vertex towards which it moves.
+    // Index of the vertex towards which this vertex moves.
     partner: u32,
     // Progress of the move, 0 to 1.
     way: f32,

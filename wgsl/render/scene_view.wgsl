@@ -10,8 +10,8 @@ struct SceneView {
     // Position of the eye relative to the corner of the view's cell (w = 1). In a parallel view, the direction towards the eye
     // (w = 0).
     eye: vec4<f32>,
-    // Unit vector towards the light (xyz). w is the ambient light: the fraction that surfaces facing away still receive, 0
-    // to 1.
+    // Unit vector towards the light (xyz). w is the ambient light, 0 to 1: the fraction that surfaces facing away still
+    // receive.
     light: vec4<f32>,
     // Linear RGB colour of the light.
     light_color: vec3<f32>,

@@ -1,5 +1,5 @@
-// Skinning functions for vertex shaders, which draw skinned vertices at their placements or skin vertices from a palette
-// themselves. `build.rs` joins this file and its imports into one text, for shaders that are not composed with WESL. Prepend
+// Skinning functions for vertex shaders: to draw skinned vertices at their placements, or to skin vertices from a palette in
+// the shader. `build.rs` joins this file and its imports into one text, for shaders that are not composed with WESL. Prepend
 // that text to your own code.
 import package::wgsl::affine::product_row;
 import package::wgsl::skinning::cluster::CLUSTER;

@@ -21,8 +21,8 @@ fn unit_or(vector: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
 }
 
 // Matrix of a bone, or of a weighted sum of bones, from a palette of dual quaternions. `real` is the rotation and `dual` the
-// dual part; the pair may have any length but 0. The stretch is applied first: `diagonal` has its elements xx, yy and zz,
-// `above` its elements xy, xz and yz.
+// dual part; the pair may have any length but 0. The stretch is an upper triangular matrix that is applied first. `diagonal`
+// has the stretch's elements xx, yy and zz, `above` its elements xy, xz and yz.
 fn rows_of_dual(real: vec4<f32>, dual: vec4<f32>, diagonal: vec4<f32>, above: vec4<f32>) -> Rows {
     // The factor 2 / (squared length) replaces normalization.
     let twice = 2.0 * (1.0 / dot(real, real));
@@ -47,8 +47,8 @@ fn placed_position(rows: Rows, position: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(dot(rows.x, point), dot(rows.y, point), dot(rows.z, point));
 }
 
-// `normal`, transformed by an affine matrix and not normalized. Cofactors are used, which is right for uneven scales too. The
-// result points inwards if the matrix mirrors.
+// `normal`, transformed by an affine matrix and not normalized. The transform uses the matrix's cofactors, so it is also
+// correct for uneven scales. The result points inwards if the matrix mirrors.
 fn placed_normal(rows: Rows, normal: vec3<f32>) -> vec3<f32> {
     let x = rows.x.xyz;
     let y = rows.y.xyz;

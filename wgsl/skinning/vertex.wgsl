@@ -1,4 +1,4 @@
-// Layout of vertices in the kernels' buffers, skinned or not: five pairs of floats, one after the other.
+// Layout of skinned and unskinned vertices in the kernels' buffers: five pairs of floats, one after the other.
 
 // Position in metres, in model space, from the first and second pair of a vertex.
 fn vertex_position(first: vec2<f32>, second: vec2<f32>) -> vec3<f32> {

@@ -1,6 +1,7 @@
-// Cone stepping over `cone_map`. Each cell stores its highest corner, and a cone on that corner in which a ray crosses the
-// surface at most once. No step can therefore pass the first crossing unnoticed. A binary search finds the crossing between the
-// last two points (B section 2.3.3; Policarpo and Oliveira 2007, made safe under bilinear filtering).
+// Cone stepping over `cone_map`. Each cell stores the height of its highest corner, and the radius of a cone on that corner.
+// Inside the cone, a ray crosses the surface at most once, so no step can pass the first crossing unnoticed. A binary search
+// finds the crossing between the last two points (B section 2.3.3; Policarpo and Oliveira 2007, made safe under bilinear
+// filtering).
 import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_missed, surface_point};
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
 import package::wgsl::surface::linear::surface_narrowed;
@@ -23,8 +24,8 @@ fn surface_cone(
     var samples = 0u;
     var step = 0u;
     while step < bound {
-        // Steps above the surface have a loop of their own. The rays of a workgroup then wait only for each other's steps, not
-        // for each other's patches.
+        // Steps above the surface have a loop of their own. In this loop, a ray waits only for the steps of the other rays in
+        // its workgroup, not for their intersections with patches.
         var node: SurfaceNode;
         var exits: vec2<f32>;
         var leave: f32;

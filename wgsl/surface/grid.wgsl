@@ -65,7 +65,7 @@ fn surface_grid(size: vec2<u32>, ray: SurfaceRay, address: u32) -> SurfaceGrid {
 // Largest number of cells that a ray is assumed to cross.
 const SURFACE_MAX_CROSSED: f32 = 16384.0;
 
-// Upper bound of the number of steps of a ray, which visits every node that it can touch once.
+// Upper bound of the number of steps of a ray. In these steps, the ray can visit each node that it touches once.
 fn surface_bound(grid: SurfaceGrid, levels: u32) -> u32 {
     let crossed = min(abs(grid.travel.x) + abs(grid.travel.y), SURFACE_MAX_CROSSED);
     return 2u * (u32(crossed) + 3u) + levels;
@@ -105,7 +105,7 @@ fn surface_exits(grid: SurfaceGrid, node: SurfaceNode) -> vec2<f32> {
     return select(exits, vec2<f32>(SURFACE_NEVER), grid.inverse == vec2<f32>(0.0));
 }
 
-// Cell of a node in which the ray is at a parameter.
+// Cell, inside a node, in which the ray is at `parameter`.
 fn surface_cell(grid: SurfaceGrid, node: SurfaceNode, parameter: f32) -> vec2<i32> {
     let at = vec2<i32>(floor(grid.start + parameter * grid.travel));
     return clamp(at, node.low, node.high - 1);
@@ -140,7 +140,8 @@ fn surface_corners(heights: texture_2d<f32>, grid: SurfaceGrid, index: vec2<i32>
 }
 
 // First ray parameter in enter..=leave at which the ray is on or below the bilinear patch of a cell; -1 if there is none. `low`
-// is the cell's corner. Along the ray, the height above a patch is a quadratic function.
+// is the corner to which the patch is relative (`surface_corner`). The ray's height above a patch is a quadratic function of
+// the parameter.
 fn surface_patch(grid: SurfaceGrid, corners: vec4<f32>, low: vec2<i32>, enter: f32, leave: f32) -> f32 {
     let at = (grid.start - vec2<f32>(low)) + enter * grid.travel;
     let slope = vec2<f32>(corners.y - corners.x, corners.z - corners.x);

@@ -37,7 +37,7 @@ fn surface_search(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     let width = 1.0 / f32(steps);
     var bracket = SurfaceBracket(0.0, 1.0, 0.0, 0.0, 0u);
     for (var step = 1u; step <= SURFACE_MAX_STEPS; step++) {
-        // The bottom of the volume is on or below every surface, so the last step always stops.
+        // The bottom of the volume is on or below every surface, so the search stops at the last step at the latest.
         let parameter = select(f32(step) * width, 1.0, step >= steps);
         let height = surface_height(heights, surface_at(ray, parameter), march.mip, march.address);
         bracket.samples += SURFACE_BILINEAR;
@@ -61,8 +61,8 @@ fn surface_relief(heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch
     return surface_narrowed(heights, ray, march, bracket.above, bracket.under, bracket.samples);
 }
 
-// Binary search between the parameters `above`, where the ray is above the surface, and `under`, where it is on or below.
-// `samples` is the number of texels loaded before.
+// Binary search between the parameters `above`, where the ray is above the surface, and `under`, where the ray is on or below
+// the surface. `samples` is the number of texels that were loaded before the call.
 fn surface_narrowed(
     heights: texture_2d<f32>, ray: SurfaceRay, march: SurfaceMarch, above: f32, under: f32, samples: u32,
 ) -> SurfaceHit {

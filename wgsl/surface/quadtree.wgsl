@@ -23,8 +23,8 @@ fn surface_quadtree(
     var samples = 0u;
     var step = 0u;
     while step < bound {
-        // Nodes have a loop of their own. The rays of a workgroup then wait only for each other's nodes, not for each other's
-        // patches.
+        // Visits of nodes have a loop of their own. In this loop, a ray waits only for the visits of the other rays in its
+        // workgroup, not for their intersections with patches.
         var node: SurfaceNode;
         var exits: vec2<f32>;
         var leave: f32;

@@ -1,6 +1,6 @@
-// Self-shadow: whether light reaches a point of the surface (B section 3.1.2). Hard shadow traces a ray from the light, from
-// the top of the volume, with any method; the point is lit if this ray ends there. Soft shadow samples how far the surface
-// rises above the path to the light. The further the occluder, the wider the penumbra.
+// Self-shadow: whether light reaches a point of the surface (B section 3.1.2). For a hard shadow, any method traces the light's
+// ray from the top of the volume; the point is lit if the ray ends there. For a soft shadow, samples measure how far the
+// surface rises above the path to the light. The further the occluder, the wider the penumbra.
 import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::height::surface_height;
 import package::wgsl::surface::linear::SURFACE_MAX_STEPS;
@@ -22,8 +22,9 @@ fn surface_shaded(first: SurfaceHit, hit: SurfaceHit) -> bool {
     return first.parameter < 1.0 - hit.height - SURFACE_SHADOW_BIAS;
 }
 
-// Light that reaches a point, 0 (full shadow) to 1 (full light), from `steps` heights on the path to the light. `softness` is
-// the width of the penumbra: the ratio of the surface's height above the path to its distance at which shadow is full.
+// Light that reaches a point, 0 (full shadow) to 1 (full light), from `steps` heights on the path to the light. `softness` sets
+// the width of the penumbra: shadow is full where the surface rises above the path by at least `softness` times the distance
+// from the point.
 fn surface_soft_shadow(
     heights: texture_2d<f32>, hit: SurfaceHit, light: vec3<f32>, scale: f32, march: SurfaceMarch,
     steps: u32, softness: f32,
@@ -31,7 +32,7 @@ fn surface_soft_shadow(
     if !(light.z > 0.0) {
         return 0.0;
     }
-    // The march starts at the surface, because the method may have ended slightly below it.
+    // The march starts at the surface, because the hit may lie slightly below it.
     let own = surface_height(heights, hit.uv, march.mip, march.address);
     var start = hit;
     start.height = max(hit.height, own);

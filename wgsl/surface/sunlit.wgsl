@@ -16,7 +16,8 @@ struct SurfaceShadow {
     scale: f32,
     // Number of steps of a soft shadow.
     steps: u32,
-    // Softness of a soft shadow: the ratio of excess height to distance at which shadow is full.
+    // Softness of a soft shadow: the shadow is full where the surface rises above the light's path by at least this factor
+    // times the distance from the shaded point.
     softness: f32,
 }
 
@@ -37,8 +38,8 @@ fn surface_sunlit(
     return select(1.0, 0.0, surface_shaded(first, hit));
 }
 
-// Unit normal in tangent space, from a texel of a normal map. The texture's green channel points up the image, against v, if
-// `green_up` is true; otherwise down.
+// Unit normal in tangent space, from a texel of a normal map. If `green_up` is true, the texture's green channel points up the
+// image, against v. If false, it points down the image.
 fn surface_mapped_normal(texel: vec4<f32>, green_up: bool) -> vec3<f32> {
     let slope = texel.xy * 2.0 - 1.0;
     return vec3<f32>(slope.x, select(slope.y, -slope.y, green_up), sqrt(max(1.0 - dot(slope, slope), 0.0)));

@@ -1,4 +1,5 @@
-// One function for all tracing methods. An override constant or a uniform selects the method, so that a shader needs no copies.
+// One function for all tracing methods. An override constant or a uniform selects the method, so that one shader serves all
+// methods.
 import package::wgsl::surface::ray::{SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::flat::{surface_parallax, surface_parallax_limited, surface_plain};
 import package::wgsl::surface::linear::{surface_occlusion, surface_relief};

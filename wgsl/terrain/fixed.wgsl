@@ -6,8 +6,9 @@ const HEIGHT_ONE: i32 = 65536;
 // Largest absolute height, in 1/65536 units.
 const HEIGHT_LIMIT: i32 = 0x3fffffff;
 
-// Mean of four heights, rounded half up, for four lanes at once. If the sums of two pairs are 2p + x and 2q + y, the mean is
-// floor((p + q + 1 + x & y) / 2). No step overflows for heights of at most 2^30 - 1.
+// Mean of four heights, rounded half up, for four lanes at once. The sum of two heights is 2p + x, and the sum of the other two
+// is 2q + y, with x and y in {0, 1}. The mean is then floor((p + q + 1 + (x & y)) / 2). No step overflows for heights of at
+// most 2^30 - 1.
 fn mean_of_four(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i32> {
     let one = vec4<u32>(1u);
     let first = a + b;
@@ -30,7 +31,8 @@ fn multiply_high(a: vec4<u32>, b: u32) -> vec4<u32> {
 }
 
 // (9 (b + c) − (a + d)) / 16, rounded half up: the value halfway between b and c on the cubic through four values (Dyn, Levin
-// and Gregory 1987). No step overflows for values of at most 1.25 · 2^30, the largest results for heights.
+// and Gregory 1987). No step overflows for values of at most 1.25 · 2^30, the largest result that this function has for
+// heights.
 fn four_point(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i32> {
     let four = vec4<u32>(4u);
     let low = vec4<i32>(15);

@@ -34,7 +34,7 @@ struct Level {
 // Out: heights of the fine points of all windows, row by row, in 1/65536 units.
 @group(0) @binding(3) var<storage, read_write> fine: array<i32>;
 
-// Whether a thread may have fine points to write, wherever in its first cell the window starts.
+// Whether a thread may have fine points to write. The test allows for a window that starts anywhere in its first cell.
 fn has_point(id: vec3<u32>) -> bool {
     return all(id.xy <= vec2<u32>(level.fine_width / 2u));
 }

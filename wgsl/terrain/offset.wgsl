@@ -10,7 +10,7 @@ const OFFSET_POSITIVE = 1u;
 const OFFSET_GAUSSIAN = 2u;
 
 // Four random offsets in 1/65536 units. `distribution` is one of the constants above. `range` has the same units and is at most
-// 2^30, so that twice the range fits.
+// 2^30, so that twice the range fits in 32 bits.
 fn height_offset(distribution: u32, range: u32, words: Words) -> vec4<i32> {
     if distribution == OFFSET_POSITIVE {
         return vec4<i32>(multiply_high(words.first, range));

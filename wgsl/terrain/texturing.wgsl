@@ -7,7 +7,7 @@ const TILES_PERIOD: u32 = 1024u;
 const TRIPLANAR_PLANES: u32 = 3u;
 
 // Weights of the three projection planes for a unit normal: from above (x), from the east or west (y), from the north or south
-// (z). The weights sum to 1. Ground of up to 17 degrees is textured from above alone.
+// (z). The weights sum to 1. Ground with a slope of up to 17 degrees is textured only from above.
 fn triplanar_weights(normal: vec3<f32>) -> vec3<f32> {
     let facing = max(abs(normal.yxz) - 0.3, vec3<f32>(0.0));
     let squared = facing * facing;
@@ -15,7 +15,7 @@ fn triplanar_weights(normal: vec3<f32>) -> vec3<f32> {
 }
 
 // Texture coordinates on a projection plane, 0 to 2 in the order of the weights. `tiles` is a position in tiles: east, up,
-// south. On walls, the top of the texture is up. The function is linear, so it can be applied to derivatives too.
+// south. On walls, the top of the texture is up. The function is linear, so it also converts derivatives.
 fn triplanar_uv(plane: u32, tiles: vec3<f32>) -> vec2<f32> {
     let wall = vec2<f32>(select(tiles.x, tiles.z, plane == 1u), -tiles.y);
     return select(wall, tiles.xz, plane == 0u);
@@ -42,7 +42,7 @@ fn cell_mean(corners: vec4<f32>, at: vec2<f32>) -> f32 {
 }
 
 // Noise at texture coordinates, seen from above: brightness (x) and warmth (y), each −1 to 1. The noise has cells of 2, 8 and
-// 32 tiles. The lattice is integer, so every device has the same cells.
+// 32 tiles. The cells have integer coordinates, so they are the same on every device.
 fn color_variation(tiles: vec2<f32>) -> vec2<f32> {
     var sum = vec2<f32>(0.0);
     var scale = 0.5;

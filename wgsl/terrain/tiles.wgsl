@@ -15,7 +15,7 @@ struct MapZone {
 const TILE_BITS: u32 = 22u;
 
 // Converts a height, in 1/65536 units, to a position in 2^-22 tiles, rounded down, modulo TILES_PERIOD. `tiles_per_unit` is the
-// number of 2^-22 tiles per unit of height.
+// number of 2^-22 tiles per world unit of height.
 fn tiles_up(height: i32, tiles_per_unit: u32) -> u32 {
     let part = u32(height) & 0xffffu;
     let low = part * (tiles_per_unit & 0xffffu);

@@ -11,9 +11,11 @@ struct Zone {
     min: f32,
     // Upper end of the zone's range of heights, in height units. The weight is greatest there.
     max: f32,
-    // Weight that grows with steepness: rise.x * steepness + rise.y, clamped to 0 to 1. (0, 1) stands for all slopes.
+    // Weight that grows with steepness: rise.x * steepness + rise.y, clamped to 0 to 1. The pair (0, 1) gives weight 1 on all
+    // slopes.
     rise: vec2<f32>,
-    // Weight that falls with steepness: fall.x * steepness + fall.y, clamped to 0 to 1. Both weights are multiplied.
+    // Weight that falls with steepness: fall.x * steepness + fall.y, clamped to 0 to 1. It is multiplied by the weight of
+    // `rise`.
     fall: vec2<f32>,
     // Influence of the texture's height map where zones meet, 0 to 1.
     height_blend: f32,
@@ -45,8 +47,9 @@ fn steepness(normal: vec3<f32>) -> f32 {
     return sqrt(normal.x * normal.x + normal.z * normal.z) / (1.0 + normal.y);
 }
 
-// Weight of a zone, 0 to 1, at a height in height units and a steepness. The weight by height is 1 at max, and 0 from max ±
-// (max − min) on (B equation 3.6). The weights by steepness multiply it.
+// Weight of a zone, 0 to 1, at a height in height units and a steepness. It is the product of a weight by height and the two
+// weights by steepness. The weight by height is 1 at `max`. It is 0 where the height differs from `max` by `max` − `min` or
+// more (B equation 3.6).
 fn zone_weight(zone: Zone, height: f32, steep: f32) -> f32 {
     let range = zone.max - zone.min;
     let rise = clamp(zone.rise.x * steep + zone.rise.y, 0.0, 1.0);
@@ -54,8 +57,8 @@ fn zone_weight(zone: Zone, height: f32, steep: f32) -> f32 {
     return max(0.0, (range - abs(height - zone.max)) * (1.0 / range)) * (rise * fall);
 }
 
-// Factor of a zone's weight by the height of its texel, 0 to 1: high texels show first where zones meet. Without height
-// blending, the factor is 1. With it, the factor falls to 16^-4 in the deepest texels.
+// Factor, 0 to 1, by which a texel's height reduces the weight of its zone: where zones meet, high texels show first. Without
+// height blending, the factor is 1. With height blending, the factor falls to 16^-4 in the deepest texels.
 fn zone_prominence(zone: Zone, texel_height: f32) -> f32 {
     let depth = 0.9375 * zone.height_blend;
     let reduced = (1.0 - depth) + depth * texel_height;
