@@ -46,7 +46,7 @@
 //! use relievo::ops::terrain::field::field;
 //! use relievo::ops::terrain::{config::TerrainConfig, export::sha256, recipe::Recipe};
 //!
-//! // B's own JSON, on the CPU. `relievo::ops::terrain::generator::Generator` gives the same bits on a GPU.
+//! // Thesis B's own JSON, on the CPU. `relievo::ops::terrain::generator::Generator` gives the same bits on a GPU.
 //! let config = TerrainConfig::from_json(r#"{"patchSize": 257, "scaleFactor": 40.0, "seed": "any text"}"#)?;
 //! let patch = field(&Recipe::new(config), &[[0, 0]], 0)?.remove(0);
 //! assert!(sha256(&patch).starts_with("d50dfddcc5fb3237"));

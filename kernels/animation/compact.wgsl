@@ -35,8 +35,8 @@ struct CompactParams {
 
 // Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: CompactParams;
-// One bit per slot of each instance, in three sections of the same layout: bones that are sampled, the subset that is sampled
-// ahead, and bones whose model matrices this frame updates.
+// Three bit sets of the same layout, each with one bit per bone of each instance, in the order of bones: the bones that are
+// sampled, those of them that are sampled ahead, and the bones whose model matrices this frame updates.
 @group(0) @binding(1) var<storage, read_write> bits: array<u32>;
 // Bones in their order, parents first.
 @group(0) @binding(2) var<storage, read> slots: array<Slot>;

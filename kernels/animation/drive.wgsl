@@ -17,7 +17,7 @@ struct DriveParams {
 struct DrivenWord {
     // Index of the word: instance * words + word.
     at: u32,
-    // Driven bones, one bit per slot.
+    // Driven bones, one bit per bone in the order of bones.
     bones: u32,
 }
 
@@ -27,8 +27,8 @@ struct DrivenWord {
 @group(0) @binding(1) var<storage, read> driven: array<DrivenWord>;
 // Level of detail of each instance.
 @group(0) @binding(2) var<storage, read> lods: array<Lod>;
-// One bit per slot of each instance, in two sections of the same layout: bones that are sampled, and the subset that is sampled
-// ahead.
+// Two bit sets of the same layout, each with one bit per bone of each instance, in the order of bones: the bones that are
+// sampled, and those of them that are sampled ahead.
 @group(0) @binding(3) var<storage, read_write> bits: array<u32>;
 
 @compute @workgroup_size(64)

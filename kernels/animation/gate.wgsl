@@ -58,8 +58,8 @@ struct GateParams {
 @group(0) @binding(5) var<storage, read_write> sampled: array<u32>;
 // Remaining error budget of each bone with a child that is not the next bone in the order.
 @group(0) @binding(6) var<storage, read_write> remaining: array<u32>;
-// One bit per slot of each instance, in three sections of the same layout: bones that are sampled, the subset that is sampled
-// ahead, and bones whose model matrices this frame updates.
+// Three bit sets of the same layout, each with one bit per bone of each instance, in the order of bones: the bones that are
+// sampled, those of them that are sampled ahead, and the bones whose model matrices this frame updates.
 @group(0) @binding(7) var<storage, read_write> bits: array<u32>;
 
 // First factor of the hash `scramble`.
@@ -74,7 +74,7 @@ fn scramble(word: u32) -> u32 {
     return mixed ^ (mixed >> 15u);
 }
 
-// A's rule: whether the update in this frame is skipped. One update per period is skipped. If a period is no longer than a
+// Thesis A's rule: whether the update in this frame is skipped. One update per period is skipped. If a period is no longer than a
 // frame, every update is skipped. Otherwise, an update is skipped if the clock has passed a multiple of the period since the
 // last frame.
 fn is_skipped(period: u32, ticks: u32) -> bool {

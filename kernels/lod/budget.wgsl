@@ -1,4 +1,4 @@
-// Finds how much the levels of detail of a view must be coarsened so that its triangles fit a budget (A section 6.3). Each
+// Finds how much the levels of detail of a view must be coarsened so that its triangles fit a budget (thesis A section 6.3). Each
 // coarser level of an instance saves triangles once the factor of the instance's metric is large enough. A histogram sums these
 // savings over the logarithm of the factor, rank by rank. It gives the bin of the smallest sufficient factor. A second
 // histogram divides this bin into parts. All views that share a budget add to these two histograms, stage by stage.

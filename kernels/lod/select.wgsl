@@ -62,8 +62,8 @@ fn in_picture(rows: array<vec4<f32>, 3>, point: vec3<f32>) -> vec2<f32> {
     return select(vec2<f32>(1e4), vec2<f32>(dot(rows[0], at), dot(rows[1], at)) / w, w > 0.0);
 }
 
-// Factor of the metric for instances that are perceived poorly (A section 6.4): instances that move across the picture, and
-// instances away from the picture's middle.
+// Factor of the metric for instances that are perceived poorly (thesis A section 6.4): instances that move across the picture,
+// and instances away from the picture's middle.
 fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
     if object.motion == 0.0 && object.periphery == 0.0 {
         return 1.0;

@@ -1,6 +1,6 @@
-// Skinning (A section 8.4): transforms vertices by their bones, with the number of influences in each instance's InstanceLod.
-// Invisible instances, and vertices beyond an instance's level of detail, are skipped. A workgroup skins one listed cluster of
-// one instance. In the list, instances vary faster than clusters, so that a cluster's vertices stay in the cache.
+// Skinning (thesis A section 8.4): transforms vertices by their bones, with the number of influences in each instance's
+// InstanceLod. Invisible instances, and vertices beyond an instance's level of detail, are skipped. A workgroup skins one listed
+// cluster of one instance. In the list, instances vary faster than clusters, so that a cluster's vertices stay in the cache.
 import package::wgsl::skinning::cluster::{CLUSTER, CLUSTER_FRESH};
 import package::wgsl::skinning::instance_lod::{InstanceLod, MAX_LEVELS};
 import package::wgsl::skinning::page::NO_PAGE;

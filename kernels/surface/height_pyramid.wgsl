@@ -1,5 +1,5 @@
-// One level of the max-mip pyramids of a batch of height maps (B section 2.3.4). A leaf has the height of the highest corner of
-// a bilinear cell. Any other node has the largest height of its four children. A thread computes a node.
+// One level of the max-mip pyramids of a batch of height maps (thesis B section 2.3.4). A leaf has the height of the highest
+// corner of a bilinear cell. Any other node has the largest height of its four children. A thread computes a node.
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index};
 
 // Parameters of the kernel `surface/height_pyramid`.

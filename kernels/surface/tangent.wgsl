@@ -1,4 +1,4 @@
-// Tangent frames at the vertices of a triangle mesh (B section 4.2). Each vertex gathers the tangents of its triangles in
+// Tangent frames at the vertices of a triangle mesh (thesis B section 4.2). Each vertex gathers the tangents of its triangles in
 // ascending order. No atomics are needed, and the sum is the same in every run.
 
 // Parameters of the kernel `surface/tangent`.

@@ -1,6 +1,6 @@
-// B's transition area (section 3.3.1): samples within `width` of a border move towards the existing patch on the other side of
-// the border. The left and right borders are handled first, then the upper and lower borders on the result. A thread moves a
-// sample. The thread's `id` has the sample's column, its row, and the patch among the patches of the dispatch.
+// Thesis B's transition area (section 3.3.1): samples within `width` of a border move towards the existing patch on the other
+// side of the border. The left and right borders are handled first, then the upper and lower borders on the result. A thread
+// moves a sample. The thread's `id` has the sample's column, its row, and the patch among the patches of the dispatch.
 
 // Whether the neighbours lie in `others`, a separate buffer of patches, instead of `heights`.
 override OTHERS: bool = false;

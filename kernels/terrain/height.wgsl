@@ -1,4 +1,4 @@
-// One level of diamond-square subdivision for a batch of windows of the plane (B section 3.3.1). A thread recomputes the
+// One level of diamond-square subdivision for a batch of windows of the plane (thesis B section 3.3.1). A thread recomputes the
 // centers to the left of its coarse point and above it. Threads therefore need no barrier, and a level is one dispatch.
 import package::wgsl::terrain::fixed::mean_of_four;
 import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};

@@ -23,7 +23,7 @@ struct HydraulicParams {
     rain: i32,
     // Fraction of the water that evaporates in a cycle, in 1/32768.
     evaporation: i32,
-    // Fraction of the missing sediment that is eroded in a cycle, in 1/32768.
+    // Fraction, per cycle, of the shortfall of sediment below capacity that erosion of the ground makes up, in 1/32768.
     erosion: i32,
     // Fraction of the excess sediment that is deposited in a cycle, in 1/32768.
     deposition: i32,

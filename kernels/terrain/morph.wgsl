@@ -1,5 +1,5 @@
-// Blend of two height fields (B section 4.4, targetHeight): from + floor((to - from) * time), in integers. A thread computes
-// four samples.
+// Blend of two height fields (thesis B section 4.4, targetHeight): from + floor((to - from) * time), in integers. A thread
+// computes four samples.
 
 // Parameters of the kernel `terrain/morph`.
 struct MorphParams {

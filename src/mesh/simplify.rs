@@ -1,6 +1,6 @@
 //! Mesh simplification by half-edge collapses. A collapse merges a point of the surface into one of its neighbours.
 //! Cheap collapses are made first. Vertices are neither moved nor created, so every level uses a subset of the mesh's
-//! own vertices, with their attributes. One run records every level (B section 3.2, after Hoppe, "Progressive Meshes",
+//! own vertices, with their attributes. One run records every level (thesis B section 3.2, after Hoppe, "Progressive Meshes",
 //! SIGGRAPH 1996).
 //!
 //! Vertices that share one position in every pose are grouped into one *point*. These vertices are the *wedges* of the
@@ -11,7 +11,7 @@
 //! A collapse is legal only if all of these conditions hold, whatever its cost:
 //! - The link condition holds (Dey, Edelsbrunner, Guha and Nekhayev 1999), so the surface keeps its topology. Closed
 //!   surfaces stay closed, and manifold surfaces stay manifold. Points where the input is not manifold are kept.
-//! - No triangle's normal turns by more than 75° in any pose, and no triangle loses its area. (The limit in A section
+//! - No triangle's normal turns by more than 75° in any pose, and no triangle loses its area. (The limit in thesis A section
 //!   4.1 is 90°, but the turns of several collapses in a row can add up to a flip.) Triangles without area in the input
 //!   are not restricted.
 //! - A point on a border moves only along that border.
@@ -108,7 +108,7 @@ pub enum Cost {
         /// Whether to refuse a collapse between two points whose normals are more than 90° apart in the first pose (B
         /// section 3.2.3).
         ///
-        /// **Decided**: a point's normal is the sum of the *unit* normals of its triangles, because B's equation 3.1
+        /// **Decided**: a point's normal is the sum of the *unit* normals of its triangles, because thesis B's equation 3.1
         /// compares unit normals. B defines normals as cross products (3.2.3), but these would weight the triangles by
         /// area.
         check_normals: bool,

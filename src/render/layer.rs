@@ -27,7 +27,7 @@ pub enum Layer {
     /// [`CrossFade`](crate::scene::Transition::CrossFade) or [`Alpha`](crate::scene::Transition::Alpha). Shadow maps show a level
     /// of these instances while the level's weight is more than a half.
     Depth,
-    /// Surface attributes before lighting, with depth, in three colours (a G-buffer).
+    /// Three colour attachments, with depth: surface attributes before lighting (a G-buffer).
     ///
     /// - The unit normal (w: 1) in world axes, on the visible side, with normal maps and reliefs applied.
     /// - The linear colour (w: 1) of material, texture and tint.
@@ -36,7 +36,7 @@ pub enum Layer {
     ///
     /// Pixels without a surface keep the caller's clear value. No object has the number 0.
     Surface,
-    /// Screen-space motion since the last frame, with depth, in one colour.
+    /// One colour attachment, with depth: screen-space motion since the last frame.
     ///
     /// The unit is the picture's width for x (to the right) and its height for y (downwards). A pixel's last position is its
     /// position minus this value. The value contains the motion of skinned vertices, of placements and of the camera. On reliefs,
@@ -55,7 +55,7 @@ pub enum Layer {
     /// "Only in model space" means that the velocity still contains the motion of the placement. Camera jitter counts as motion:
     /// subtract the difference of the last two jitters. Points behind the last frame's eye have velocity 0.
     Velocity,
-    /// Surface positions, with depth, in two colours: the position in world units (w: 1), and the object and instance
+    /// Two colour attachments, with depth: the surface position in world units (w: 1), and the object and instance
     /// numbers as in [`Layer::Surface`].
     ///
     /// Positions are relative to the corner of the view's cell ([`Camera::cell`](crate::scene::Camera::cell)). On reliefs, the

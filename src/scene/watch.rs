@@ -146,7 +146,7 @@ impl Watch {
         Ok(Self { last: self.last.clone(), ..Self::new(gpu, self.chosen.clone())? })
     }
 
-    /// Records the copies of a frame's matrices, if a readback buffer is free.
+    /// Records commands that copy a frame's matrices to a readback buffer, if one is free.
     pub(super) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

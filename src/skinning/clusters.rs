@@ -101,7 +101,7 @@ impl Clusters {
         self
     }
 
-    /// For each vertex of the mesh, its slot.
+    /// For each vertex of the mesh, its position in the order of clusters.
     pub fn slots(&self) -> Vec<u32> {
         slots(&self.order)
     }

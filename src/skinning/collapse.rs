@@ -1,4 +1,4 @@
-//! Reduction of bones for distant characters (A sections 8.8 and 9.6). Bones collapse one by one into the nearest kept
+//! Reduction of bones for distant characters (thesis A sections 8.8 and 9.6). Bones collapse one by one into the nearest kept
 //! bone above them. The next bone to collapse is always the one that displaces skinned vertices least. The result is a
 //! complete [`Model`], which every pass accepts like the original.
 //!
@@ -58,7 +58,7 @@ pub struct CollapseOptions {
     pub bones: KeptBones,
     /// Names of bones that never collapse, such as bones with attached objects. A name keeps every bone with that name.
     pub keep: Vec<String>,
-    /// Whether bones without children never collapse, such as the ends of fingers and feet (A section 9.6.1).
+    /// Whether bones without children never collapse, such as the ends of fingers and feet (thesis A section 9.6.1).
     pub keep_end_effectors: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Level of detail of a skinned instance: how many bones each vertex follows, and which vertices are skinned (A section
+//! Level of detail of a skinned instance: how many bones each vertex follows, and which vertices are skinned (thesis A section
 //! 8.4).
 
 use crate::InputError;

@@ -1,6 +1,6 @@
 //! Levels of detail of skinned meshes. A mesh is simplified for all poses of its clips, and the error of each level is
-//! measured in all of these poses (A sections 9.3 and 9.4). Meshes of a model that share borders are simplified as one
-//! surface, so that no gap opens between them (B section 5.2).
+//! measured in all of these poses (thesis A sections 9.3 and 9.4). Meshes of a model that share borders are simplified as one
+//! surface, so that no gap opens between them (thesis B section 5.2).
 
 use std::iter::successors;
 use std::ops::ControlFlow;

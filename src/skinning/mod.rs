@@ -1,4 +1,4 @@
-//! Skinning: meshes that follow skeletons, their levels of detail (LODs), and bounds of their motion (A sections 8.4
+//! Skinning: meshes that follow skeletons, their levels of detail (LODs), and bounds of their motion (thesis A sections 8.4
 //! and 9).
 
 pub mod at_rest;

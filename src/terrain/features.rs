@@ -1,4 +1,5 @@
-//! Injected heights, called features (B sections 3.3.1 and 4.4): reading files, and finding the features that a window needs.
+//! Injected heights, called features (thesis B sections 3.3.1 and 4.4): reading files, and finding the features that a window
+//! needs.
 
 #[cfg(feature = "gpu")]
 mod index;
@@ -20,7 +21,7 @@ use crate::{Error, InputError};
 #[cfg(feature = "gpu")]
 pub use index::{FeatureGrid, FeatureIndex};
 
-/// One file of features for one patch, in B's JSON format.
+/// One file of features for one patch, in thesis B's JSON format.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct FeatureFile {

@@ -1,5 +1,5 @@
-//! Triangle meshes of height fields, for export (B section 4.4). Drawing needs no mesh: relievo draws directly from the heights.
-//! [`crate::terrain::ground::Ground`] answers height queries on the CPU.
+//! Triangle meshes of height fields, for export (thesis B section 4.4). Drawing needs no mesh: relievo draws directly from the
+//! heights. [`crate::terrain::ground::Ground`] answers height queries on the CPU.
 
 use std::io::{self, Write};
 

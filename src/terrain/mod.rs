@@ -1,7 +1,7 @@
-//! Terrain generated from a seed. Heights are integers, and every device computes the same bits (B sections 3.3 and 4.4).
+//! Terrain generated from a seed. Heights are integers, and every device computes the same bits (thesis B sections 3.3 and 4.4).
 //!
-//! **Decided**: heights are integers. B requires exactly the same content on every client (3.3), but B's floating-point heights
-//! would be rounded differently on different devices.
+//! **Decided**: heights are integers. Thesis B requires exactly the same content on every client (3.3), but its floating-point
+//! heights would be rounded differently on different devices.
 
 pub mod blend;
 pub mod border;

@@ -8,14 +8,14 @@ const TRANSITION_HARD = 0u;
 const TRANSITION_GEOMORPH = 1u;
 // Transition: both levels are drawn, each in its own pixels of a pattern.
 const TRANSITION_DITHER = 2u;
-// Transition: both levels are blended (A section 7.3.1).
+// Transition: both levels are blended (thesis A section 7.3.1).
 const TRANSITION_CROSS_FADE = 3u;
-// Transition: the current level is opaque, and the next level is blended over it (A section 7.3.2).
+// Transition: the current level is opaque, and the next level is blended over it (thesis A section 7.3.2).
 const TRANSITION_FADE_IN = 4u;
-// Transition in two phases (A section 7.3.3). First the next level fades in over the opaque current level. Then the next level
-// is opaque while the current level fades out.
+// Transition in two phases (thesis A section 7.3.3). First the next level fades in over the opaque current level. Then the next
+// level is opaque while the current level fades out.
 const TRANSITION_TWO_PHASE = 5u;
-// Transition: levels change at once, and instances fade out between two metrics (A section 7.4).
+// Transition: levels change at once, and instances fade out between two metrics (thesis A section 7.4).
 const TRANSITION_ALPHA = 6u;
 
 // Level of an instance that had no level in the last frame.

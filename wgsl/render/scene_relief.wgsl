@@ -1,4 +1,4 @@
-// The kind `relief`: instances of a static mesh with a relief (B section 3.1, tables 4.1 to 4.4). Any method may trace the
+// The kind `relief`: instances of a static mesh with a relief (thesis B section 3.1, tables 4.1 to 4.4). Any method may trace the
 // relief. The kind has self-shadow and silhouettes, and writes the depth of the relief.
 // kind relief: deep
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex};

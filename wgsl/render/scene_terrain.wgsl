@@ -1,5 +1,5 @@
-// The kind `terrain`: patches of a scene, drawn directly from their heights (B section 3.3.1, tables 4.7 and 4.8). Each visible
-// patch is one instance of an indexed mesh. Textures of zones are blended by height, slope and their own height maps.
+// The kind `terrain`: patches of a scene, drawn directly from their heights (thesis B section 3.3.1, tables 4.7 and 4.8). Each
+// visible patch is one instance of an indexed mesh. Textures of zones are blended by height, slope and their own height maps.
 // Alternatively, the patches are drawn as a wireframe.
 // kind terrain:
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, triangle_surface};

@@ -1,6 +1,6 @@
 // Cone stepping over `cone_map`. Each cell stores the height of its highest corner, and the radius of a cone on that corner.
 // Inside the cone, a ray crosses the surface at most once, so no step can pass the first crossing unnoticed. A binary search
-// finds the crossing between the last two points (B section 2.3.3; Policarpo and Oliveira 2007, made safe under bilinear
+// finds the crossing between the last two points (thesis B section 2.3.3; Policarpo and Oliveira 2007, made safe under bilinear
 // filtering).
 import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_missed, surface_point};
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};

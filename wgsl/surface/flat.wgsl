@@ -1,4 +1,4 @@
-// Methods that do not search: plain texturing and parallax (B section 3.1.1, table 4.2).
+// Methods that do not search: plain texturing and parallax (thesis B section 3.1.1, table 4.2).
 import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 

@@ -1,5 +1,5 @@
-// Linear search. Relief mapping refines the result by a binary search (B section 3.1.2, table 4.4). Parallax occlusion mapping
-// refines it by a segment (B section 2.3.1). Both may step over features that are thinner than a step.
+// Linear search. Relief mapping refines the result by a binary search (thesis B section 3.1.2, table 4.4). Parallax occlusion
+// mapping refines it by a segment (thesis B section 2.3.1). Both may step over features that are thinner than a step.
 import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 

@@ -1,5 +1,5 @@
-// Max-mip traversal (B section 2.3.4; Tevs, Ihrke and Seidel 2008). If the ray passes above a node, the whole node is skipped.
-// In a leaf, the ray is intersected exactly with the bilinear patch.
+// Max-mip traversal (thesis B section 2.3.4; Tevs, Ihrke and Seidel 2008). If the ray passes above a node, the whole node is
+// skipped. In a leaf, the ray is intersected exactly with the bilinear patch.
 import package::wgsl::surface::ray::{SURFACE_EXHAUSTED, SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_missed, surface_point};
 import package::wgsl::surface::grid::{SurfaceGrid, SurfaceNode, surface_beyond, surface_bound, surface_cell, surface_corner, surface_corners, surface_exits, surface_grid, surface_node, surface_patch};
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_levels};

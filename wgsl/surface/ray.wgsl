@@ -1,5 +1,5 @@
-// Rays through a relief volume, the parameters of a march, and its result: the interface of every method (B section 3.1). The
-// volume's top has height 1, its bottom height 0. Its depth s is in uv units.
+// Rays through a relief volume, the parameters of a march, and its result: the interface of every method (thesis B section 3.1).
+// The volume's top has height 1, its bottom height 0. Its depth s is in uv units.
 
 // Address mode: the tile repeats.
 const SURFACE_WRAP: u32 = 0u;

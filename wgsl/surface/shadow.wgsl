@@ -1,5 +1,5 @@
-// Self-shadow: whether light reaches a point of the surface (B section 3.1.2). For a hard shadow, any method traces the light's
-// ray from the top of the volume; the point is lit if the ray ends there. For a soft shadow, samples measure how far the
+// Self-shadow: whether light reaches a point of the surface (thesis B section 3.1.2). For a hard shadow, any method traces the
+// light's ray from the top of the volume; the point is lit if the ray ends there. For a soft shadow, samples measure how far the
 // surface rises above the path to the light. The further the occluder, the wider the penumbra.
 import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::height::surface_height;

@@ -1,7 +1,7 @@
-// Features: heights that are injected into a window (B section 3.3.1, feature injection). A feature grid has one bit per point,
-// in rows of 32-bit words. The grid covers one point more than the window on every side. Each word comes with the index of its
-// first feature's height. Without a feature, a lookup takes one load. With a feature, it also takes a population count and the
-// load of the height.
+// Features: heights that are injected into a window (thesis B section 3.3.1, feature injection). A feature grid has one bit per
+// point, in rows of 32-bit words. The grid covers one point more than the window on every side. Each word comes with the index of
+// its first feature's height. Without a feature, a lookup takes one load. With a feature, it also takes a population count and
+// the load of the height.
 
 // Feature mode: no features.
 const FEATURES_NONE = 0u;

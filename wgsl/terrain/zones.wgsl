@@ -1,5 +1,5 @@
-// Zones of ground by height and steepness (B section 3.3.1, equation 3.6). The height maps of their textures blend the zones
-// (height blending, B section 2.3.4). Any material shader may import these functions.
+// Zones of ground by height and steepness (thesis B section 3.3.1, equation 3.6). The height maps of their textures blend the
+// zones (height blending, thesis B section 2.3.4). Any material shader may import these functions.
 //
 //     var blend = zone_blend();
 //     for (var z = 0u; z < count; z++) { blend = zone_blended(blend, zones[z], height, steepness(normal), texel_of(z)); }

@@ -20,7 +20,8 @@ pub use pass::{AttachBuffers, AttachPass};
 pub use crate::shared::lod::attach::{AttachParams, Attachment, KeptBone, NO_MESH};
 
 /// Bound on the difference between CPU and GPU for an entry of an attached mesh's placement, on any device: 3e-6. It is relative
-/// to the same entry computed from the absolute values of all three transforms.
+/// to a magnitude: what the entry would be if all components of the three multiplied transforms were replaced by their absolute
+/// values.
 ///
 /// Every operation on a device may round by ε = 2⁻²³. An entry of the placement's axes carries an error of 7ε. Each of the two
 /// products adds 4ε: multiplication (ε), two additions (2ε), and the addition of the translation (ε). The sum is 15ε. The CPU

@@ -1,4 +1,4 @@
-//! Progressive meshes: a mesh and its coarser levels, with all vertices in one common order (B section 3.2, after
+//! Progressive meshes: a mesh and its coarser levels, with all vertices in one common order (thesis B section 3.2, after
 //! Hoppe, "Progressive Meshes", SIGGRAPH 1996). A level is a prefix of the vertices, and a list of triangles. Two
 //! successive levels differ by a range of vertices and an [`IndexPatch`] for the list of triangles.
 //!
@@ -7,7 +7,7 @@
 //! time of the vertex's collapse, latest first. Triangles keep the mesh's order at every level.
 //!
 //! Every vertex has a *partner*, which replaces the vertex in the first level that lacks it.
-//! [`ProgressiveMesh::morphed`] moves the vertices of a level towards their partners (A section 7.5; Hoppe's geomorph).
+//! [`ProgressiveMesh::morphed`] moves the vertices of a level towards their partners (thesis A section 7.5; Hoppe's geomorph).
 //! At the end of this motion, the level looks like the next coarser level: every corner is at its partner, and the
 //! additional triangles are degenerate.
 

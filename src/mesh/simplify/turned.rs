@@ -1,4 +1,4 @@
-//! Normals of triangles, and the test whether a collapse flips a triangle (A section 4.1).
+//! Normals of triangles, and the test whether a collapse flips a triangle (thesis A section 4.1).
 
 use glam::DVec3;
 

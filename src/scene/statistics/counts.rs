@@ -34,7 +34,7 @@ impl SceneCounts {
         Ok(Self { version, characters, ring, last: None })
     }
 
-    /// Records the copies of a frame's counts, if a readback buffer is free.
+    /// Records commands that copy a frame's counts to a readback buffer, if one is free.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64, objects: &Slots<Object>) {
         self.arrive();
         self.ring.record(encoder, (frame, self.characters.clone()), |encoder, to| {

@@ -34,7 +34,7 @@ impl Budget {
 #[derive(Debug, Default)]
 pub(super) struct BudgetOfView {
     budget: Option<Arc<Budget>>,
-    /// The controller that keeps [`Quality::milliseconds`](crate::scene::Quality::milliseconds).
+    /// The controller that holds the frame time to the target [`Quality::milliseconds`](crate::scene::Quality::milliseconds).
     pacer: Option<Pacer>,
 }
 

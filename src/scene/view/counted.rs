@@ -35,7 +35,7 @@ impl View {
         Ok(())
     }
 
-    /// Records the copies of a frame's counts.
+    /// Records commands that copy a frame's counts to a readback buffer.
     pub(in crate::scene) fn count(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,4 +1,4 @@
-//! Skinning: transforms every vertex by its bones (A section 8.4).
+//! Skinning: transforms every vertex by its bones (thesis A section 8.4).
 //!
 //! *Linear* blending transforms a vertex by the weighted mean of its bones' matrices. Normals use the cofactors of the
 //! mean times the sign of its determinant, which is correct under non-uniform and mirrored scale. Tangents use the

@@ -1,4 +1,4 @@
-//! Top-down colour maps of patches: textured zones of ground (B section 3.3.1, equations 3.6 and 3.7) with hill-shading.
+//! Top-down colour maps of patches: textured zones of ground (thesis B section 3.3.1, equations 3.6 and 3.7) with hill-shading.
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -17,7 +17,7 @@ pub enum WeightMode {
     /// Weights are divided by their sum. Where all weights are 0, the nearest zone gets weight 1.
     #[default]
     Normalized,
-    /// B's rule: colours are multiplied by the weights and added, without normalization.
+    /// Thesis B's rule: colours are multiplied by the weights and added, without normalization.
     Additive,
 }
 

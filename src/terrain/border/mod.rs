@@ -1,5 +1,5 @@
-//! Transitions between patches (B section 3.3.1, "transition area"), for the border mode `blend`. Along a border with an existing
-//! patch, the samples of a new patch move towards the existing patch's heights.
+//! Transitions between patches (thesis B section 3.3.1, "transition area"), for the border mode `blend`. Along a border with an
+//! existing patch, the samples of a new patch move towards the existing patch's heights.
 //!
 //! Where only one neighbour is within reach, samples on the shared border get exactly the neighbour's heights. Near a point where
 //! four patches meet, the top or bottom transition runs after the left or right one, so heights on the vertical border no longer

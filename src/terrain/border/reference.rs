@@ -1,4 +1,4 @@
-//! Transitions between patches (B's transition area): the CPU reference of `kernels/terrain/border.wgsl`.
+//! Transitions between patches (thesis B's transition area): the CPU reference of `kernels/terrain/border.wgsl`.
 
 /// Moves samples of `patch` towards the heights of existing neighbours. `patch` has `size` samples per row. `neighbours` holds
 /// the patches to the left, to the right, above and below. Only samples closer than `width` to a shared border move.

@@ -1,4 +1,4 @@
-//! Terrain configuration: the JSON of B table 4.6 with relievo's optional fields.
+//! Terrain configuration: the JSON of thesis B table 4.6 with relievo's optional fields.
 
 mod json;
 mod zones;
@@ -40,7 +40,7 @@ pub enum Offset {
     /// Uniform in [−r, r).
     #[default]
     Signed,
-    /// Uniform in [0, r), as in B.
+    /// Uniform in [0, r), as in thesis B.
     Positive,
     /// Sum of four uniform numbers, scaled to [−r, r): nearly Gaussian.
     Gaussian,
@@ -62,7 +62,7 @@ impl Offset {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum HeightInterpolation {
-    /// Mean of four neighbours, as in B. This leaves visible creases along the lines of coarse lattices.
+    /// Mean of four neighbours, as in thesis B. This leaves visible creases along the lines of coarse lattices.
     #[default]
     Linear,
     /// Four-point interpolation, without creases (Dyn, Levin and Gregory, "A 4-point interpolatory subdivision scheme for curve
@@ -78,10 +78,10 @@ pub enum Border {
     /// heights and slopes, whatever the order of generation.
     #[default]
     Seamless,
-    /// Every patch is generated without its neighbours; its own opposite edge replaces them (B section 3.3.1).
+    /// Every patch is generated without its neighbours; its own opposite edge replaces them (thesis B section 3.3.1).
     Wrap,
-    /// Every patch is generated as with [`Border::Wrap`] and then blended towards existing neighbours (B section 3.3.1). The
-    /// value is the width of the transition, in samples. Only in this mode does the result depend on the order of generation.
+    /// Every patch is generated as with [`Border::Wrap`] and then blended towards existing neighbours (thesis B section 3.3.1).
+    /// The value is the width of the transition, in samples. Only in this mode does the result depend on the order of generation.
     Blend(u32),
 }
 
@@ -92,9 +92,9 @@ pub struct TerrainConfig {
     pub patch_size: u32,
     /// Range of the random offsets at the coarsest level, in height units; ≥ 0.
     ///
-    /// **Decided**: the first subdivision uses the whole range, as in B's steps 1 and 2 (3.3.1). The base lattice of `seamless`
-    /// terrain uses the whole range too. B's text, however, halves the range at the start of each subdivision, including the
-    /// first.
+    /// **Decided**: the first subdivision uses the whole range, as in thesis B's steps 1 and 2 (3.3.1). The base lattice of
+    /// `seamless` terrain uses the whole range too. Thesis B's text, however, halves the range at the start of each subdivision,
+    /// including the first.
     pub scale_factor: f64,
     /// Seed of the random offsets: any text. The same seed gives the same world at every resolution.
     pub seed: String,
@@ -115,7 +115,7 @@ pub struct TerrainConfig {
     /// World units between neighbouring samples, > 0. Default 1.
     pub terrain_scale: f64,
     /// World units that a zone's texture covers before it repeats; at least 1/16384 of a patch's edge. Default `None`:
-    /// (`patch_size` − 1) / 10 units, which gives 10 · `terrain_scale` tiles along a patch's edge (B's `terrainScale`).
+    /// (`patch_size` − 1) / 10 units, which gives 10 · `terrain_scale` tiles along a patch's edge (thesis B's `terrainScale`).
     pub texture_tile: Option<f64>,
     /// Whether steep ground is also textured from the sides (triplanar mapping), which avoids stretched textures there. Default
     /// `false`.
@@ -127,7 +127,7 @@ pub struct TerrainConfig {
 }
 
 impl TerrainConfig {
-    /// Configuration with B's three parameters and the default of every other field.
+    /// Configuration with the three parameters of thesis B. All other fields have their defaults.
     ///
     /// # Errors
     /// [`InputError`] as [`TerrainConfig::validate`].

@@ -1,4 +1,4 @@
-//! Height zones and their textures (B section 3.3.1, tables 4.7 and 4.8).
+//! Height zones and their textures (thesis B section 3.3.1, tables 4.7 and 4.8).
 
 use std::path::{Path, PathBuf};
 
@@ -125,8 +125,8 @@ pub struct Zone {
     /// Slopes on which the zone lies. Default: all slopes.
     #[serde(default, deserialize_with = "slope")]
     pub slope: Slope,
-    /// Influence of the texture's height map where zones meet (B section 2.3.4), 0 to 1. At 1, the zone shows first where its
-    /// texture is high, and last where its texture is deep. Default 0.
+    /// Influence of the texture's height map where zones meet (thesis B section 2.3.4), 0 to 1. At 1, the zone shows first where
+    /// its texture is high, and last where its texture is deep. Default 0.
     #[serde(default, rename = "heightBlend")]
     pub height_blend: f64,
     /// Number of times that the texture repeats along the edge of a texture tile, 1 to 16. Default 1.

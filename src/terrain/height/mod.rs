@@ -1,4 +1,4 @@
-//! Heights of windows onto the diamond-square surface of the whole plane, for `seamless` terrain (B section 3.3.1). All
+//! Heights of windows onto the diamond-square surface of the whole plane, for `seamless` terrain (thesis B section 3.3.1). All
 //! arithmetic is on integers, so that every device computes the same bits.
 
 #[cfg(feature = "gpu")]

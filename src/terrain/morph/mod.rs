@@ -1,4 +1,4 @@
-//! Blend of two height fields over time (B section 4.4, `targetHeight`).
+//! Blend of two height fields over time (thesis B section 4.4, `targetHeight`).
 
 use crate::InputError;
 use crate::terrain::config::{TerrainConfig, finite};

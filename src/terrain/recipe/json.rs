@@ -1,4 +1,4 @@
-//! JSON form of configurations and recipes: B's keys and relievo's optional keys.
+//! JSON form of configurations and recipes: thesis B's keys and relievo's optional keys.
 
 use serde::Deserialize;
 
@@ -110,7 +110,7 @@ impl Raw {
 }
 
 impl TerrainConfig {
-    /// Reads a configuration from B's JSON. Use [`Recipe::from_json`] for text that includes erosion.
+    /// Reads a configuration from thesis B's JSON. Use [`Recipe::from_json`] for text that includes erosion.
     ///
     /// # Errors
     /// [`InputError`] for text that is not valid JSON, for unknown or missing keys, for values out of bounds, and for keys of
