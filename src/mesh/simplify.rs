@@ -375,14 +375,25 @@ pub fn simplify_within(
     distances: &[f32],
 ) -> Result<Simplified, InputError> {
     let mut watch = |_| ControlFlow::<Infallible>::Continue(());
-    let ControlFlow::Continue(found) = simplify_watched(surface, options, distances, &[], &mut watch)?;
+    let groups = Groups::default();
+    let ControlFlow::Continue(found) = simplify_watched(surface, options, distances, &groups, &mut watch)?;
     Ok(found)
 }
 
-/// As [`simplify_within`], with rigid bodies and progress reports. `bodies` has the rigid body of each vertex, or
-/// [`NO_BODY`]; the list may be empty. Vertices of one body keep their distances from each other in every pose. `watch`
-/// is called repeatedly with the fraction of triangles removed so far. It can stop the simplification by returning
-/// `Break`.
+/// Groups of vertices and triangles that simplification respects.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Groups<'a> {
+    /// Rigid body of each vertex, or [`NO_BODY`]; empty if there are no bodies. Vertices of one body keep their
+    /// distances from each other in every pose.
+    pub bodies: &'a [u32],
+    /// Mesh of each triangle; empty if all triangles belong to one mesh. A mesh keeps a triangle at every remaining
+    /// point that its triangles meet. Otherwise a narrow piece of a mesh could vanish between its neighbours, far from
+    /// all other triangles of the same mesh.
+    pub meshes: &'a [u32],
+}
+
+/// As [`simplify_within`], with groups and progress reports. `watch` is called repeatedly with the fraction of
+/// triangles removed so far. It can stop the simplification by returning `Break`.
 ///
 /// # Errors
 /// The same errors as [`simplify_within`].
@@ -390,7 +401,7 @@ pub(crate) fn simplify_watched<B>(
     surface: &Surface<'_>,
     options: &SimplifyOptions,
     distances: &[f32],
-    bodies: &[u32],
+    groups: &Groups<'_>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
 ) -> Result<ControlFlow<B, Simplified>, InputError> {
     validate(surface)?;
@@ -411,7 +422,7 @@ pub(crate) fn simplify_watched<B>(
         let bound = format!("must be at most {}, the stride", surface.stride);
         return Err(InputError::new("seams.attributes", attributes, bound));
     }
-    Ok(reducer::reduce(surface, options, distances, bodies, watch))
+    Ok(reducer::reduce(surface, options, distances, groups, watch))
 }
 
 /// For each vertex, the index of its point. Vertices with the same position in every pose share a point. Points are

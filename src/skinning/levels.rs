@@ -14,7 +14,7 @@ use crate::InputError;
 use crate::asset::Model;
 use crate::asset::mesh::{MAX_LEVELS, MeshLevel};
 use crate::mesh::progressive::{Became, partners};
-use crate::mesh::simplify::{Simplified, SimplifyOptions, Surface, simplify_watched};
+use crate::mesh::simplify::{Groups, Simplified, SimplifyOptions, Surface, simplify_watched};
 use bodies::Bodies;
 use errors::{Suspects, errors};
 use keys::{Keys, key_moments};
@@ -220,8 +220,9 @@ fn looked_at(moments: &[Moment]) -> Vec<Moment> {
 /// Computes the levels of all meshes of a model as [`MeshLevels::new`] does, sets them in the model, and returns them.
 ///
 /// Meshes whose borders coincide in every pose are simplified as one. Their borders stay closed at every level, and
-/// they have the same number of levels with the same errors. A mesh that has vanished at a level consists of a single
-/// triangle of zero area at that level.
+/// they have the same number of levels with the same errors. Every mesh
+/// keeps a triangle wherever its triangles meet a remaining vertex, because errors count the distance to the nearest
+/// triangle of the same mesh.
 ///
 /// `clips` are the indices of the clips that will be played; none for a static mesh. `poses` is the number of poses
 /// sampled per clip, at most 216,001. To miss no motion, use the largest result of [`poses_of`](super::poses_of); fewer poses are
@@ -346,7 +347,12 @@ fn simplified(
     let surface = Surface { poses: &keys.poses, indices: &indices, attributes: &attributes, stride: 5 };
     let distances: Vec<f32> =
         successors(Some(FIRST * keys.size), |last| Some(STEP * last)).take(MAX_LEVELS - 1).collect();
-    Ok(simplify_watched(&surface, &SimplifyOptions::default(), &distances, bodies, watch)?.continue_value())
+    let meshes: Vec<u32> = match whole.meshes.len() {
+        1 => Vec::new(),
+        _ => whole.indices.chunks_exact(3).map(|triangle| whole.member_of(triangle)).collect(),
+    };
+    let groups = Groups { bodies, meshes: &meshes };
+    Ok(simplify_watched(&surface, &SimplifyOptions::default(), &distances, &groups, watch)?.continue_value())
 }
 
 /// A level of detail under construction.

@@ -159,10 +159,10 @@ fn poses_of_rigid_parts_cost_little() {
     assert!(many < 2.0 * few, "{few} s, {many} s");
 }
 
-/// A piece of a mesh that becomes a point on another mesh is as far off as the nearest triangle of its own mesh: another mesh does
-/// not stand for it.
+/// A small piece of a mesh, far from the rest of it, stays at every level and within the level's error: another mesh around it
+/// does not stand for it.
 #[test]
-fn a_piece_that_vanishes_is_as_far_off_as_its_own_mesh() {
+fn a_piece_stays_within_the_error_of_its_own_mesh() {
     let mut model = model();
     model.meshes[0].levels.clear();
     // The other mesh has two pieces: some triangles at the top, and many at one side.
@@ -184,10 +184,10 @@ fn a_piece_that_vanishes_is_as_far_off_as_its_own_mesh() {
     add_levels(&mut model, &[0], poses).expect("valid");
     let mesh = &model.meshes[1];
     let used: Vec<u32> = top.as_flattened().to_vec();
-    let mut vanished = 0;
+    assert!(mesh.levels.len() > 8, "{} levels", mesh.levels.len());
     for level in &mesh.levels {
         let is_left = used.iter().any(|vertex| level.indices.contains(vertex));
-        vanished += usize::from(!is_left);
+        assert!(is_left, "a level without the piece");
         let mut largest = 0.0_f32;
         for at in 0..poses {
             let time = model.clips[0].duration() * at as f32 / (poses - 1) as f32;
@@ -208,7 +208,6 @@ fn a_piece_that_vanishes_is_as_far_off_as_its_own_mesh() {
         }
         assert!(largest <= 1.001 * level.error + 1e-5, "{largest} is more than {}", level.error);
     }
-    assert!(vanished > 0, "no level without the piece");
 }
 
 /// The distance of a point from a triangle.

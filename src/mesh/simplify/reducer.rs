@@ -14,7 +14,7 @@ use super::quadrics::Quadrics;
 use super::queue::{Best, Queue};
 use super::topology::{Change, Kind, Topology};
 use super::tracked_samples::TrackedSamples;
-use super::{Collapse, Cost, Seams, Simplified, SimplifyOptions, Stopped, Surface};
+use super::{Collapse, Cost, Groups, Seams, Simplified, SimplifyOptions, Stopped, Surface};
 
 /// State of a mesh during simplification.
 struct Reducer<'a> {
@@ -28,6 +28,8 @@ struct Reducer<'a> {
     neighbors: Neighbors,
     /// Parts that may vanish as a whole.
     parts: Parts,
+    /// Mesh of each triangle; empty if all triangles belong to one mesh.
+    meshes: Vec<u32>,
     /// Points with an illegal collapse that is cheaper than the queued one. This collapse may become legal when
     /// triangles around the point change.
     watched: Vec<bool>,
@@ -44,18 +46,17 @@ struct Reducer<'a> {
 /// Number of collapses between two progress reports.
 const REPORT: usize = 256;
 
-/// Simplifies within each of `distances` in turn, until a limit of `options` is reached. `bodies` has the rigid body of
-/// each vertex ([`Points::on_bodies`]); empty if there are none. `watch` gets the fraction of triangles removed so far,
-/// and can stop the simplification by returning `Break`.
+/// Simplifies within each of `distances` in turn, until a limit of `options` is reached. `watch` gets the fraction of
+/// triangles removed so far, and can stop the simplification by returning `Break`.
 pub(crate) fn reduce<B>(
     surface: &Surface<'_>,
     options: &SimplifyOptions,
     distances: &[f32],
-    bodies: &[u32],
+    groups: &Groups<'_>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<B>,
 ) -> ControlFlow<B, Simplified> {
     let is_limited = distances.iter().any(|distance| *distance < f32::INFINITY);
-    let mut reducer = Reducer::new(surface, options, is_limited, bodies);
+    let mut reducer = Reducer::new(surface, options, is_limited, groups);
     if options.prune && options.cost == Cost::Quadric && !is_limited {
         reducer.parts = Parts::new(&reducer.points, &reducer.topology);
     }
@@ -91,7 +92,7 @@ struct Done {
 }
 
 impl<'a> Reducer<'a> {
-    fn new(surface: &Surface<'a>, options: &SimplifyOptions, is_limited: bool, bodies: &[u32]) -> Self {
+    fn new(surface: &Surface<'a>, options: &SimplifyOptions, is_limited: bool, groups: &Groups<'_>) -> Self {
         let cost = options.cost;
         let points = Points::new(surface.poses);
         let points = match options.seams {
@@ -99,17 +100,19 @@ impl<'a> Reducer<'a> {
             Seams::AllCrossed => points.on_charts(surface.attributes, surface.stride, surface.stride),
             Seams::Crossed { attributes } => points.on_charts(surface.attributes, surface.stride, attributes),
         };
-        let points = if bodies.is_empty() { points } else { points.on_bodies(bodies) };
-        let topology = Topology::new(&points, surface.indices, is_limited);
+        let points = if groups.bodies.is_empty() { points } else { points.on_bodies(groups.bodies) };
+        let is_numbered = is_limited || !groups.meshes.is_empty();
+        let topology = Topology::new(&points, surface.indices, is_numbered);
         let quadrics = match cost {
             Cost::Quadric => Some(Quadrics::new(surface, &points, &topology)),
             Cost::Melax { .. } => None,
         };
-        let tracked_samples =
-            is_limited.then(|| TrackedSamples::new(&topology, &points, surface.indices.len() / 3));
+        let tracked_samples = is_limited
+            .then(|| TrackedSamples::new(&topology, &points, surface.indices.len() / 3, groups.meshes));
         let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
         let (neighbors, changed, watched) = (Neighbors::default(), Vec::new(), vec![false; points.len()]);
         let (parts, listed, costs) = (Parts::default(), None, Vec::new());
+        let meshes = groups.meshes.to_vec();
         Self {
             points,
             topology,
@@ -118,6 +121,7 @@ impl<'a> Reducer<'a> {
             tracked_samples,
             neighbors,
             parts,
+            meshes,
             watched,
             marks,
             changed,

@@ -13,6 +13,9 @@ const WITNESSES: usize = 4;
 /// Marks a missing sample or triangle.
 const NONE: u32 = u32::MAX;
 
+/// Marks a sample that triangles of any mesh may represent, and a triangle where meshes are not told apart.
+const ANY: u32 = u32::MAX;
+
 /// Samples of the mesh. Each sample is assigned to a remaining triangle, and is within the allowed distance of it in
 /// every pose.
 pub(crate) struct TrackedSamples {
@@ -21,6 +24,11 @@ pub(crate) struct TrackedSamples {
     samples: Vec<Vec<u32>>,
     /// For each sample, the triangle to which it is assigned.
     homes: Vec<u32>,
+    /// Mesh of each triangle; empty if all triangles belong to one mesh. A sample is assigned to triangles of its own
+    /// mesh alone.
+    meshes: Vec<u32>,
+    /// For each point, the only mesh that it belonged to in the original, or [`ANY`]. Empty like `meshes`.
+    meshes_of_points: Vec<u32>,
     /// For each point, the samples because of which its collapses were last refused. Most collapses are tested
     /// repeatedly, and one sample is usually enough to refuse a collapse.
     witnesses: Vec<[u32; WITNESSES]>,
@@ -135,13 +143,16 @@ fn nearest_off<'a>(
     sample: &Place<impl Fn(usize) -> Vec3>,
     faces: impl Iterator<Item = &'a Face>,
 ) -> f32 {
-    faces.fold(f32::INFINITY, |least, face| least.min(off(points, &face.corners, sample, least)))
+    let own = faces.filter(|face| sample.may_be_on(face.mesh));
+    own.fold(f32::INFINITY, |least, face| least.min(off(points, &face.corners, sample, least)))
 }
 
 /// A triangle with bounds that quickly show whether it is far from a position.
 #[derive(Clone, Copy)]
 struct Face {
     number: u32,
+    /// Mesh of the triangle, or [`ANY`].
+    mesh: u32,
     corners: Corners,
     /// Center and radius of a bounding sphere in the first pose.
     middle: Vec3,
@@ -153,7 +164,7 @@ struct Face {
 }
 
 impl Face {
-    fn new(points: &Points, number: u32, corners: [u32; 3]) -> Self {
+    fn new(points: &Points, [number, mesh]: [u32; 2], corners: [u32; 3]) -> Self {
         /// Smallest squared sine of a triangle's angle at which the normal is exact enough.
         const LEAST: f32 = 1e-4;
         let corners = Corners::new(points, corners);
@@ -167,6 +178,7 @@ impl Face {
             [a, b, c].map(|corner| corner.distance_squared(middle)).into_iter().fold(0.0, f32::max).sqrt();
         Self {
             number,
+            mesh,
             corners,
             middle,
             radius,
@@ -192,7 +204,9 @@ impl Face {
         sample: &Place<impl Fn(usize) -> Vec3>,
         [limit, most]: [f32; 2],
     ) -> bool {
-        !self.is_far(sample.first, limit) && off(points, &self.corners, sample, most) <= most
+        sample.may_be_on(self.mesh)
+            && !self.is_far(sample.first, limit)
+            && off(points, &self.corners, sample, most) <= most
     }
 }
 
@@ -200,6 +214,8 @@ impl Face {
 struct Place<F> {
     /// Rigid body of the sample, or [`NO_BODY`](super::points::NO_BODY).
     body: u32,
+    /// Mesh of the sample, or [`ANY`].
+    mesh: u32,
     /// Position in the first pose.
     first: Vec3,
     /// Function that returns the position in a pose.
@@ -207,13 +223,20 @@ struct Place<F> {
 }
 
 impl<F: Fn(usize) -> Vec3> Place<F> {
-    fn new(body: u32, at: F) -> Self {
-        Self { body, first: at(0), at }
+    fn new(body: u32, mesh: u32, at: F) -> Self {
+        Self { body, mesh, first: at(0), at }
+    }
+
+    /// Whether a triangle of a mesh may represent the sample.
+    #[inline]
+    fn may_be_on(&self, mesh: u32) -> bool {
+        self.mesh == ANY || self.mesh == mesh
     }
 }
 
 impl TrackedSamples {
-    pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
+    /// Samples of a mesh with so many triangles. `meshes` has the mesh of each triangle, or is empty.
+    pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize, meshes: &[u32]) -> Self {
         let mut samples = vec![Vec::new(); triangles];
         let mut homes = vec![NONE; points.len()];
         let mut middles = Middles { positions: Vec::new(), triangles: Vec::new() };
@@ -228,16 +251,28 @@ impl TrackedSamples {
                     samples[ring.triangle as usize].push(homes.len() as u32);
                     homes.push(ring.triangle);
                     middles.positions.extend((0..points.poses()).map(|pose| middle(points, ends, pose)));
-                    middles.triangles.push(Face::new(points, ring.triangle, corners));
+                    let mesh = meshes.get(ring.triangle as usize).copied().unwrap_or(ANY);
+                    middles.triangles.push(Face::new(points, [ring.triangle, mesh], corners));
                 }
             }
         }
+        let mesh_of = |point: u32| {
+            let mut all = topology.around(point).iter().map(|triangle| meshes[*triangle as usize]);
+            let first = all.next().unwrap_or(ANY);
+            if all.all(|other| other == first) { first } else { ANY }
+        };
+        let meshes_of_points = match meshes {
+            [] => Vec::new(),
+            _ => (0..points.len() as u32).map(mesh_of).collect(),
+        };
         let (faces, below) = (Vec::new(), Vec::new());
         let witnesses = vec![[NONE; WITNESSES]; points.len()];
         let verdicts = Verdicts::new(points.len());
         Self {
             samples,
             homes,
+            meshes: meshes.to_vec(),
+            meshes_of_points,
             witnesses,
             middles,
             most: 0.0,
@@ -308,7 +343,7 @@ impl TrackedSamples {
         for face in &self.faces[..self.changed] {
             let [to, next, last] = face.corners.points;
             for side in [&[to, next][..], &[last, to], &[to, next, last]] {
-                match self.behind(points, side, behind) {
+                match self.behind(points, face.mesh, side, behind) {
                     Ok(at) => behind = at,
                     Err(needed) => return needed,
                 }
@@ -324,7 +359,12 @@ impl TrackedSamples {
         let place = self.place(points, point);
         let mut least = f32::INFINITY;
         for (around, other) in [(point, neighbor), (neighbor, point)] {
-            for [next, last] in topology.ring(around).iter().filter(|ends| !ends.contains(&other)) {
+            let numbers = topology.around(around).iter().copied();
+            let rings = topology.ring(around).iter().zip(numbers);
+            for ([next, last], number) in rings.filter(|(ends, _)| !ends.contains(&other)) {
+                if !place.may_be_on(self.mesh_of(number)) {
+                    continue;
+                }
                 least =
                     least.min(off(points, &Corners::new(points, [neighbor, *next, *last]), &place, least));
                 if least <= self.most {
@@ -348,7 +388,8 @@ impl TrackedSamples {
             for ring in topology.one_ring(around) {
                 let ends = [ring.next.point, ring.last.point];
                 if !ends.contains(&other) {
-                    self.faces.push(Face::new(points, ring.triangle, [neighbor, ends[0], ends[1]]));
+                    let number = [ring.triangle, self.mesh_of(ring.triangle)];
+                    self.faces.push(Face::new(points, number, [neighbor, ends[0], ends[1]]));
                 }
             }
         }
@@ -372,11 +413,17 @@ impl TrackedSamples {
         }
     }
 
-    /// Finds a triangle of the original mesh that is within the limit of the midpoint of `ends` in all poses. Returns
+    /// Mesh of a triangle, or [`ANY`].
+    #[inline]
+    fn mesh_of(&self, triangle: u32) -> u32 {
+        self.meshes.get(triangle as usize).copied().unwrap_or(ANY)
+    }
+
+    /// Finds a triangle of the original `mesh` that is within the limit of the midpoint of `ends` in all poses. Returns
     /// its index in `below`: `likely` if that triangle qualifies, otherwise the first that does. If there is none, the
     /// error is the square of the smallest distance.
-    fn behind(&self, points: &Points, ends: &[u32], likely: usize) -> Result<usize, f32> {
-        let place = Place::new(points.common_body(ends), |pose| middle(points, ends, pose));
+    fn behind(&self, points: &Points, mesh: u32, ends: &[u32], likely: usize) -> Result<usize, f32> {
+        let place = Place::new(points.common_body(ends), mesh, |pose| middle(points, ends, pose));
         let limits = [self.most.sqrt(), self.most];
         let face = |at: &u32| &self.middles.triangles[*at as usize];
         let is_near = |at: &u32| face(at).is_near(points, &place, limits);
@@ -391,7 +438,11 @@ impl TrackedSamples {
     fn place(&self, points: &Points, sample: u32) -> Place<impl Fn(usize) -> Vec3> {
         let middle = (sample as usize).checked_sub(points.len());
         let body = middle.map_or_else(|| points.body(sample), |at| self.middles.triangles[at].corners.body);
-        Place::new(body, move |pose| match middle {
+        let mesh = match middle {
+            None => self.meshes_of_points.get(sample as usize).copied().unwrap_or(ANY),
+            Some(at) => self.middles.triangles[at].mesh,
+        };
+        Place::new(body, mesh, move |pose| match middle {
             None => points.position(sample, pose).as_vec3(),
             Some(at) => self.middles.positions[at * points.poses() + pose],
         })
@@ -414,11 +465,12 @@ impl TrackedSamples {
     fn nearest(&self, points: &Points, sample: u32, likely: usize) -> Option<usize> {
         let place = self.place(points, sample);
         let off = |face: &Face, most| off(points, &face.corners, &place, most);
-        let first = self.faces.get(likely).map_or(self.most, |face| off(face, self.most));
+        let likely = self.faces.get(likely).filter(|face| place.may_be_on(face.mesh));
+        let first = likely.map_or(self.most, |face| off(face, self.most));
         let most = first.min(self.most);
         let (mut best, mut limit, mut least) = (None, most.sqrt(), most.next_up());
         for (at, face) in self.faces.iter().enumerate() {
-            if face.is_far(place.first, limit) {
+            if !place.may_be_on(face.mesh) || face.is_far(place.first, limit) {
                 continue;
             }
             let off = off(face, least);
@@ -555,7 +607,7 @@ mod tests {
                 continue;
             }
             let placed = [0, 1, 2].map(|point| points.position(point, 0).as_vec3());
-            let face = Face::new(&points, 0, [0, 1, 2]);
+            let face = Face::new(&points, [0, ANY], [0, 1, 2]);
             let position = placed[0] + 2.0 * size * place(4.7);
             let off = nearest_on_triangle(position, placed).distance(position);
             for limit in [0.2 * off, 0.9 * off, 0.999_999 * off, off, 1.1 * off] {

@@ -204,8 +204,8 @@ impl Reducer<'_> {
         if self.is_allowed(point, best.neighbor) { self.measure(point, best) } else { None }
     }
 
-    /// Whether a collapse keeps the topology, and keeps all samples within the distance limit. For [`Cost::Melax`] with
-    /// `check_normals`, the normals must also be similar.
+    /// Whether a collapse keeps the topology, keeps meshes where they are, and keeps all samples within the distance
+    /// limit. For [`Cost::Melax`] with `check_normals`, the normals must also be similar.
     pub(super) fn is_allowed(&mut self, point: u32, neighbor: u32) -> bool {
         self.topology.refresh(neighbor);
         let differ = match self.cost {
@@ -216,6 +216,7 @@ impl Reducer<'_> {
         };
         !differ
             && self.topology.keeps_topology(point, neighbor)
+            && (self.meshes.is_empty() || self.topology.keeps_meshes(point, neighbor, &self.meshes))
             && self.tracked_samples.as_mut().is_none_or(|tracked_samples| {
                 tracked_samples.keeps_near(&self.topology, &self.points, point, neighbor)
             })

@@ -43,7 +43,7 @@ fn check(cost: Cost, surface: &Surface<'_>, distance: f32) -> [usize; 3] {
         surface,
         &SimplifyOptions { cost, ..SimplifyOptions::default() },
         distance < f32::INFINITY,
-        &[],
+        &Groups::default(),
     );
     let most = (f64::from(distance) * reducer.points.scale()) as f32;
     reducer.tracked_samples.iter_mut().for_each(|tracked_samples| tracked_samples.set_most(most));

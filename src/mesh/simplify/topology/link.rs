@@ -43,6 +43,26 @@ impl Topology {
     }
 }
 
+impl Topology {
+    /// Whether every mesh that meets one of the points around a collapse still meets it afterwards. `meshes` has the
+    /// mesh of each triangle.
+    pub(crate) fn keeps_meshes(&mut self, point: u32, neighbor: u32, meshes: &[u32]) -> bool {
+        let vanishing: Vec<(u32, u32)> = (self.ring(point).iter().zip(self.around(point)))
+            .filter(|([next, last], _)| *next == neighbor || *last == neighbor)
+            .map(|([next, last], number)| (*number, if *next == neighbor { *last } else { *next }))
+            .collect();
+        vanishing.iter().for_each(|(_, other)| self.refresh(*other));
+        let meets = |at: u32, mesh: u32| {
+            let stays = |number: &&u32| vanishing.iter().all(|(vanished, _)| vanished != *number);
+            self.around(at).iter().filter(stays).any(|number| meshes[*number as usize] == mesh)
+        };
+        vanishing.iter().all(|(number, other)| {
+            let mesh = meshes[*number as usize];
+            meets(*other, mesh) && (meets(point, mesh) || meets(neighbor, mesh))
+        })
+    }
+}
+
 /// As [`Topology::keeps_topology`], but for two interior points, around which each neighbour is `next` exactly once.
 /// The points must have exactly two common neighbours, and must not form a tetrahedron with them.
 fn is_link_of_edge(ring: &[[u32; 2]], far: &[[u32; 2]]) -> bool {
