@@ -249,8 +249,9 @@ pub fn subtree_radii(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[
     whole
 }
 
-/// Typical lever arms: the root of the sum of squares of point displacements, averaged over directions. Each bone of the subtree
-/// contributes points at distance `bone_radii` from its origin. Positions are in the rest pose, in the model's units.
+/// Typical lever arms of the bones. A bone's lever arm says how far the points of its subtree move for each radian by which the
+/// bone turns: the root of the sum of their squared displacements, with the squares averaged over all directions of the axis.
+/// Each bone of the subtree contributes points at distance `bone_radii` from its origin. Positions are in the rest pose, in the model's units.
 pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
     let model_matrices =
         crate::animation::local_to_model::reference::local_to_model(skeleton, &skeleton.rest());

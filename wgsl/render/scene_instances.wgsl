@@ -116,7 +116,7 @@ fn pushed_position(entry: u32, placement: Rows, position: vec3<f32>) -> vec3<f32
     return position + scene_object.push[level >> 2u][level & 3u] * scale * away;
 }
 
-// Vertex in the placement of a list entry's instance. The arguments are in model space; `tangent.w` is the sign of the
+// A vertex, transformed by the placement of the instance of a list entry. The arguments are in model space; `tangent.w` is the sign of the
 // bitangent in model space.
 fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec4<f32>, uv: vec4<f32>) -> SceneVertex {
     let placement = instance_placement(instance_index(entry));

@@ -73,7 +73,7 @@ fn morphed(a: vec3<f32>, b: vec3<f32>, way: f32) -> vec3<f32> {
     return a * (1.0 - way) + b * way;
 }
 
-// Vertex in the placement of a list entry's instance. `vertex` is an index in the mesh.
+// A vertex of the mesh, transformed by the placement of the instance of a list entry. `vertex` is its index in the mesh.
 fn placed_vertex(entry: u32, vertex: u32) -> SceneVertex {
     let instance = entry_instance(entry);
     let at = 5u * vertex_index_of(instance, vertex);

@@ -26,8 +26,8 @@ pub use pass::BoundsPass;
 
 /// Largest allowed difference between a side of a box and the CPU reference, relative to the largest side; on any device.
 ///
-/// Each of the two results may be off by 14ε + 6ε of the extent, 4ε of the center and 2ε of the side (ε = 2⁻²⁴). This is 26ε per
-/// result, and 52ε < 4e-6 for both.
+/// Each of the two results has errors of 20ε of the extent, 4ε of the center and 2ε of the side (ε = 2⁻²⁴). Extent and center
+/// count as the largest side, so each result is off by at most 26ε of it, and both together by 52ε < 4e-6.
 pub const BOUNDS_BOUND: f32 = 4e-6;
 
 /// An axis-aligned box in model space.

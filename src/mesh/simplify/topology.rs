@@ -230,7 +230,7 @@ impl Topology {
         Some([*first, *last])
     }
 
-    /// Numbers of a point's triangles; empty if triangles are not numbered.
+    /// Indices of the triangles around a point; empty if triangles are not numbered.
     pub(crate) fn around(&self, point: u32) -> &[u32] {
         self.numbers.get(self.spans[point as usize].range()).unwrap_or_default()
     }

@@ -66,7 +66,8 @@ pub(crate) struct ViewLists {
     pub(super) decide: Job,
     /// The stages of the budget, which run between `select` and `decide`; `None` without a budget.
     pub(super) budget: Option<BudgetStages>,
-    /// The state of the budget, which `decide` reads. Without a budget, it coarsens nothing.
+    /// The state of the budget, which `decide` reads. For a view without a budget, the buffer holds a state with which
+    /// `decide` coarsens nothing.
     pub(super) budget_state: Buffer<BudgetState>,
     pub(super) list: Job,
     pub(super) attached: AttachedJobs,
