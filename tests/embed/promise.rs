@@ -113,7 +113,7 @@ fn check(name: &str, model: &Model, measured: u32) {
         assert_eq!(found.missing, 0, "{name}: {found:?}");
         let levels = found.levels.iter().filter(|instances| **instances > 0).count();
         assert!(levels > 1 && found.levels[0] > 0, "{name}: hardly a level of detail: {found:?}");
-        // Otherwise the bound would be of no use. Where no level of detail helps, bones have 0.08 of it.
+        // Otherwise the bound would be of no use. Where no level of detail helps, bones have 0.2 of it.
         assert!(found.largest > 0.04 * f64::from(pixels), "{name}: {found:?}");
     }
 }
