@@ -156,8 +156,8 @@ fn span(range: std::ops::Range<usize>) -> Span {
     Span::new(range.start as u32, range.end as u32)
 }
 
-/// The WGSL text with its comments replaced by spaces. All other bytes keep their offsets, and all lines their numbers. The
-/// text must be valid.
+/// The WGSL text with its comments replaced by spaces. All other bytes keep their offsets, and all lines keep their
+/// numbers. The text must be valid.
 pub(crate) fn without_comments(source: &str) -> String {
     let (mut code, mut rest) = (String::with_capacity(source.len()), source);
     while let Some(at) = rest.find("//").into_iter().chain(rest.find("/*")).min() {

@@ -112,10 +112,10 @@ impl Camera {
         Self { cell, ..Self::looking_at(eye, target, field_of_view, near_far, viewport) }
     }
 
-    /// A perspective camera that frames an axis-aligned box, from the south at a low angle, as large as the picture allows.
-    /// `low` and `high` are opposite corners in world coordinates ([`Bounds::world`](crate::scene::Bounds::world)).
-    /// `viewport` is width and height in pixels. If a corner is not finite, [`View::set`](crate::scene::View::set) refuses
-    /// the camera, as for [`Camera::looking_at`].
+    /// A perspective camera that looks at an axis-aligned box from the south, at a low angle. The box appears as large as
+    /// the picture allows. `low` and `high` are opposite corners in world coordinates
+    /// ([`Bounds::world`](crate::scene::Bounds::world)). `viewport` is width and height in pixels. If a corner is not
+    /// finite, [`View::set`](crate::scene::View::set) refuses the camera, as for [`Camera::looking_at`].
     pub fn framing(low: DVec3, high: DVec3, viewport: [u32; 2]) -> Self {
         let (center, extent) = ((low + high) / 2.0, (high - low).max(DVec3::splat(1e-3)));
         let field_of_view: f32 = 0.7;

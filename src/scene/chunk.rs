@@ -1,5 +1,5 @@
 //! Chunks of an object: consecutive instances with their own buffers, lists and draws. An object has one chunk, unless the
-//! buffers of its instances would exceed a buffer binding of the device.
+//! buffers of its instances would exceed the device's largest buffer binding.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub(crate) struct Chunk {
     pub drawables: Vec<Box<dyn Drawable>>,
     /// Per drawable: the chunk in device format, with the range of the drawable's draws. Valid until the next layout.
     pub lods: Vec<LodObject>,
-    /// The parts of the chunk whose instances are drawn one by one, from back to front.
+    /// The chunk's parts whose instances are drawn one by one, from back to front.
     pub sorted: Vec<SortedParts>,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct SortedParts {
     pub drawable: usize,
     /// Index of the part in the drawable.
     pub part: usize,
-    /// Index of the draw of the chunk's first instance.
+    /// Index of the part's draw for the chunk's first instance. The draws for the other instances follow in order.
     pub first: u32,
 }
 

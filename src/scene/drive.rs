@@ -43,11 +43,11 @@ impl<'a> Poses<'a> {
     /// space to the parent's space, as in [`InstancePose::local`](crate::scene::InstancePose::local). `bone` is an index
     /// ([`Scene::bone`]).
     ///
-    /// The write is recorded as a copy of 48 bytes into `encoder`, which must be the encoder passed to `pose`. Work recorded
-    /// later in the same encoder sees the new value. The write holds for this frame only: the next frame samples the bone
-    /// again, so write in every frame. [`Scene::pick`], [`Scene::bounds`] and [`Scene::tight_bounds`] use the values
-    /// written in the last frame. Nothing is submitted. Memory is allocated only if a frame writes more than any earlier
-    /// frame.
+    /// The write is recorded as a copy of 48 bytes into `encoder`, which must be the encoder that [`Scene::record_with`]
+    /// passes to its closure. Work recorded later in this encoder sees the new value. The write holds for this frame only:
+    /// the next frame samples the bone again, so write in every frame. [`Scene::pick`], [`Scene::bounds`] and
+    /// [`Scene::tight_bounds`] use the values written in the last frame. Nothing is submitted. Memory is allocated only if
+    /// a frame writes more than any earlier frame.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, for a bone that is not driven, for a
@@ -80,7 +80,7 @@ impl<'a> Poses<'a> {
         Ok(())
     }
 
-    /// Records the copies of all writes.
+    /// Ends the writes and uploads their values. Returns the first error of a write, if any.
     pub(super) fn finish(self, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
         match (self.failure, self.stream) {
             (Some(failure), _) => Err(failure),

@@ -114,10 +114,10 @@ impl Scene {
     /// refer to vertices whose memory was reused.
     ///
     /// Each call records one frame, even if one submission holds several frames. A draw uses the last frame that was
-    /// recorded before it. At most [`FRAMES_IN_FLIGHT`] recordings may await execution. A recording counts until the device has
-    /// executed it and wgpu has noticed, in a submission or in [`wgpu::Device::poll`]. You may drop an encoder instead: the
-    /// next recording then starts afresh ([`Scene::invalidate`]). Submit recordings in order, because each relies on changes
-    /// in earlier recordings. For an empty scene, nothing is recorded or drawn.
+    /// recorded before it. At most [`FRAMES_IN_FLIGHT`] recordings may await execution. A recording counts until the device
+    /// has executed it and wgpu has detected this, in a later submission or in [`wgpu::Device::poll`]. You may drop an
+    /// encoder instead: the next recording then starts afresh ([`Scene::invalidate`]). Submit recordings in order, because
+    /// each relies on changes in earlier recordings. For an empty scene, nothing is recorded or drawn.
     ///
     /// # Errors
     /// [`InputError`] if `views` is empty, for a view of another scene or without a camera, if [`FRAMES_IN_FLIGHT`]
@@ -263,7 +263,7 @@ impl Scene {
         }
     }
 
-    /// Records the copies of statistics and watched bones for readback.
+    /// Records commands that copy statistics and watched bones to readback buffers.
     fn count(&mut self, encoder: &mut wgpu::CommandEncoder, views: &mut [&mut View]) {
         if let Some(counts) = &mut self.counts {
             counts.record(encoder, self.frames, &self.objects);

@@ -16,7 +16,7 @@ impl Scene {
     ///
     /// The ground is computed on the CPU from heights that the scene keeps on the host. For terrain made from fields, these
     /// are the heights last read by [`Scene::read_ground`]. For patches that [`Scene::set_patches`] has added since then,
-    /// the heights are unknown.
+    /// the heights are unknown, and the result is `None`.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not in this scene or is not terrain, and for a position that is not finite.

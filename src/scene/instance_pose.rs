@@ -11,7 +11,8 @@ use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::matrices::affine_of;
 
 /// A copy of the pose of a character's instance ([`Scene::pose`]), with the transforms of all bones. The caller may change
-/// the copy, for [`Poses::write`](crate::scene::Poses::write) or its own use. Bones are given by index ([`Scene::bone`]).
+/// the copy, and may pass its transforms to [`Poses::write`](crate::scene::Poses::write). Bones are given by index
+/// ([`Scene::bone`]).
 ///
 /// # Examples
 ///
@@ -202,8 +203,8 @@ mod tests {
         InstancePose::new(&skeleton, Pose { locals, model_matrices }, world_from_model)
     }
 
-    /// If a bone turns, the bones below it turn about its joint by the same rotation in the world, even if the placement
-    /// mirrors.
+    /// If a bone turns, the bones below it turn about its joint, by the same rotation in the world. This holds even for a
+    /// placement that mirrors.
     #[test]
     fn bones_turn_about_axes_of_the_world() {
         let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -2.0).normalize(), 0.7);

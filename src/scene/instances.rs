@@ -20,7 +20,7 @@ pub(super) const NOBODY: SceneInstance = SceneInstance {
     bounding_sphere: [0.0; 4],
 };
 
-/// Largest number of unchanged elements between two changed ones that are uploaded together, in one range.
+/// Largest gap, in unchanged elements, between two changed elements that are still uploaded in one range.
 const GAP: usize = 4;
 
 /// The instances of an object.
@@ -54,7 +54,7 @@ impl Instances {
         instances
     }
 
-    /// Largest number of instances without growing, a multiple of [`BLOCK`].
+    /// Number of instances that the array can hold without growing, a multiple of [`BLOCK`].
     pub fn capacity(&self) -> usize {
         self.all.len()
     }

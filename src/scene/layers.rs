@@ -8,13 +8,13 @@ use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::placement::Play;
 
 impl Scene {
-    /// Plays a clip on a layer, over the base and the layers below, with a weight. At weight 0 the layer has no effect.
-    /// At weight 1 it replaces the base and the layers below for all of its bones. Layers are counted from 1
+    /// Plays a clip on a layer, over the base and the layers below, with a weight. At weight 0 the layer has no effect. At
+    /// weight 1, the layer replaces the base and the layers below, on all bones of the layer. Layers are counted from 1
     /// ([`CharacterOptions::layers`](crate::scene::CharacterOptions::layers)). Rotations are blended along the chord
     /// ([`animation::layers`](crate::animation::layers)). Weights of morph targets always come from the base.
     ///
     /// While a layer has a weight above 0, all bones of the instance are sampled in every frame that shows the instance.
-    /// As long as the weight is above 0, culling uses a sphere that holds any blend of the model's clips.
+    /// While the weight is above 0, culling uses a sphere that holds the instance in any blend of the model's clips.
     ///
     /// # Errors
     /// The errors of [`Scene::play`]; [`InputError`] for a layer that the character does not have, and for a weight outside
@@ -78,9 +78,10 @@ impl Scene {
         self.bound_again(instance)
     }
 
-    /// Cross-fades from the base's clip to another clip over `seconds` of the scene's time. Meanwhile `layer`, which must
-    /// have all bones, plays the new clip with a weight that grows from 0 to 1. Afterwards the base plays the new clip, and
-    /// the layer is free again.
+    /// Cross-fades from the base's clip to another clip over `seconds` of the scene's time. Meanwhile `layer` plays the new
+    /// clip with a weight that grows from 0 to 1. This layer must affect all bones
+    /// ([`LayerMask::All`](crate::scene::LayerMask::All)). Afterwards the base plays the new clip, and the layer is free
+    /// again.
     ///
     /// # Errors
     /// The errors of [`Scene::play_layer`] and [`Scene::fade_layer`]; [`InputError`] for a layer with a mask.

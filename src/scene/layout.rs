@@ -54,8 +54,8 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// Allocates the buffers for objects that are laid out one after the other. `end` has the total numbers of instances,
-    /// list words and draws.
+    /// Allocates the buffers for objects that are laid out one after the other. `end` holds the total numbers of
+    /// instances, list words and draws.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].

@@ -8,8 +8,8 @@ use crate::shared::lod::budget::MAX_FACTOR;
 use crate::shared::lod::object::{FADE_PROGRESS, NO_RANK, RANKS, object_flags_word};
 use crate::shared::lod::select::MAX_MOTION;
 
-/// An object's farthest threshold, divided by this number, is its `metric_floor`. The number is half of the largest factor
-/// by which a triangle budget may enlarge a metric.
+/// An object's `metric_floor` is its largest threshold divided by this number. The number is half of the largest factor by
+/// which a triangle budget may enlarge a metric.
 const FLOOR: f32 = 0.5 * MAX_FACTOR;
 
 /// How the levels of detail of an object are chosen, in every view, and how they change.
@@ -40,11 +40,11 @@ pub struct LevelOfDetail {
     /// How instances change from one level to the next.
     pub transition: Transition,
     /// Hysteresis h: half width of the interval around each threshold in which an instance keeps its level (thesis A,
-    /// section 7.2). It is a fraction of the threshold, at least 0 and below 1. With distances, an instance takes the coarser
-    /// level at (1 + h) times the threshold, and returns to the finer level at (1 − h) times the threshold. With
+    /// section 7.2). It is a fraction of the threshold, at least 0 and below 1. With distances, an instance takes the
+    /// coarser level at (1 + h) times the threshold, and returns to the finer level at (1 − h) times the threshold. With
     /// sizes, which shrink with distance, the two factors change places. With [`Criterion::Error`], hysteresis never makes
-    /// the error exceed the allowed displacement: an instance takes a coarser level once that level's error is at most
-    /// (1 − h) times the allowed displacement. Hysteresis applies only if levels change at once or fade over a time
+    /// the error exceed the allowed displacement: an instance takes a coarser level once the coarser level's error is at
+    /// most (1 − h) times the allowed displacement. Hysteresis applies only if levels change at once or fade over a time
     /// ([`Pace::Seconds`]).
     pub hysteresis: f32,
     /// Factor of the metric (allowed displacement or distance), above 0. With 2, levels are chosen as if an instance were

@@ -19,8 +19,8 @@ use crate::skinning::bone_path::BonePath;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use lists::List;
 
-/// Cache key of a [`BonePath`]: character, clip, whether layers are blended over the clip, bone, and the bits of the sphere
-/// that the bone carries.
+/// Cache key of a [`BonePath`]: character, clip, whether layers are blended over the clip, bone, and the bits of the attached
+/// mesh's bounding sphere.
 type PathKey = (ObjectId, (u32, bool), usize, [u32; 4]);
 
 /// All attached meshes of a scene.
@@ -29,12 +29,12 @@ pub(super) struct Attachments {
     all: HashMap<InstanceId, Attached>,
     /// The meshes attached to each character instance.
     carried: HashMap<InstanceId, Vec<InstanceId>>,
-    /// Cache: the path of each sphere that a bone carries.
+    /// Cache: for attached meshes, the paths of their bounding spheres as the bones move.
     paths: HashMap<PathKey, BonePath>,
-    /// One list per chunk whose characters carry a mesh or carried one before. The key is the slot and generation of the
-    /// object, and the index of the chunk.
+    /// One list per chunk in which any character carries a mesh or has carried one before. The key is the slot and
+    /// generation of the object, and the index of the chunk.
     lists: BTreeMap<([u32; 2], usize), List>,
-    /// Version of `lists`: the number of allocations and drops so far. Jobs prepared for another version are outdated.
+    /// Version of `lists`: the number of lists allocated and dropped so far. Jobs prepared for another version are outdated.
     pub version: u64,
     /// Version of the layout that the lists were written for; `None` if attachments have changed since.
     written: Option<u64>,
@@ -55,7 +55,7 @@ struct Attached {
     sphere: BoundingSphere,
     /// The placement that the mesh takes when it is detached.
     own: Placement,
-    /// Number of this attachment, counted over all attachments ever made.
+    /// Serial number of this attachment among all attachments ever made.
     key: u32,
 }
 
@@ -71,11 +71,11 @@ impl Scene {
     /// units to bone space: `scene.pose(character)?.offset_of_world_units(bone, offset)?`.
     ///
     /// Views cull the mesh together with its character. They use one sphere that holds both in every pose of the clip. The
-    /// mesh's level of detail meets [`Quality::pixels`](crate::scene::Quality) for every pose of the bone. While a character
-    /// carries a mesh, all of its bones are sampled in every frame that shows the character. The mesh is therefore exactly
-    /// in place, up to rounding. [`Scene::world_from_model`] returns the mesh's transform. If no view of a frame sees the
-    /// character, because it is hidden or masked out, the mesh is not drawn either. Despawning the character detaches the
-    /// mesh.
+    /// mesh's level of detail meets [`Quality::pixels`](crate::scene::Quality) for every pose of the bone. While a
+    /// character carries a mesh, all bones of the character are sampled in every frame that shows it. The mesh is therefore
+    /// exactly in place, up to rounding. [`Scene::world_from_model`] returns the mesh's transform. If no view of a frame
+    /// sees the character, because it is hidden or masked out, the mesh is not drawn either. Despawning the character
+    /// detaches the mesh.
     ///
     /// In [`Layer::Velocity`](crate::render::Layer::Velocity), the mesh moves with its bone. In the frame in which it is
     /// attached, it moves from its previous position. In three cases the mesh moves only with its character's placement for

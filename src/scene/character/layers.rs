@@ -37,7 +37,7 @@ pub(super) struct Weight {
     to: f32,
     start: f64,
     seconds: f64,
-    /// Whether the base plays the layer's clip after the change.
+    /// Whether the layer's clip becomes the base clip at the end of the change.
     hands_over: bool,
 }
 
@@ -61,7 +61,7 @@ impl Weight {
 }
 
 impl CharacterLayer {
-    /// Layers with these bone masks, with weight 0 for each of `capacity` instances.
+    /// One layer per bone mask in `masks`. Each layer has weight 0 for all of `capacity` instances.
     pub fn of_masks(
         model: &Model,
         masks: &[LayerMask<'_>],
@@ -112,8 +112,8 @@ impl Character {
         Ok(())
     }
 
-    /// Changes a layer's weight linearly to `to` over `seconds`, from scene time `now` on. With `hands_over`, the base plays
-    /// the layer's clip afterwards.
+    /// Changes a layer's weight linearly to `to` over `seconds`, from scene time `now` on. With `hands_over`, the layer's clip
+    /// becomes the base clip at the end.
     pub fn fade(
         &mut self,
         index: u32,
@@ -222,9 +222,9 @@ impl Reach {
     /// Computes the bounds of a model. `radii` holds, per bone, the largest distance between the bone and a vertex that
     /// follows it; `None` without such a vertex.
     ///
-    /// A blended transform lies between the clips' transforms. A root bone therefore stays in the box of its positions in
-    /// all clips. Any other bone stays in a ball around its parent. The ball's radius is the largest distance between bone
-    /// and parent in any clip.
+    /// A blended transform lies between the clips' transforms. A root bone therefore stays in the box around its positions
+    /// in all clips. Any other bone stays in a ball around its parent. The ball's radius is the largest distance between
+    /// bone and parent in any clip.
     pub fn new(model: &Model, radii: &[Option<f32>]) -> Self {
         let skeleton = &model.skeleton;
         let mut lengths = vec![[0.0_f32; 2]; skeleton.len()];
@@ -259,8 +259,8 @@ impl Reach {
         BoundingSphere { center: self.center, radius: self.radius }
     }
 
-    /// Two bounds for a bone: a sphere around all positions of `carried`, a sphere that the bone carries; and the largest
-    /// factor by which the bone enlarges a length.
+    /// Two bounds for a bone. The first is a sphere around all positions of the sphere `carried`, which moves with the bone.
+    /// The second is the largest factor by which the bone enlarges a length.
     pub fn of_bone(&self, bone: usize, carried: &BoundingSphere) -> (BoundingSphere, f32) {
         let (reach, stretch) = self.bones[bone];
         let radius = MARGIN * (reach + stretch * (carried.center.length() + carried.radius));
@@ -309,7 +309,8 @@ mod tests {
         assert!(weight.is_heard() && !Weight::default().is_heard() && Weight::default().is_reached(0.0));
     }
 
-    /// Blends of all clips, masked or not, stay within the bounds, and so do spheres that bones carry.
+    /// In blends of all clips, masked or not, bones stay within the bounds. Spheres that move with bones
+    /// stay within their own bounds.
     #[test]
     fn blends_stay_within_reach() {
         let model = crate::samples::creature().expect("valid");

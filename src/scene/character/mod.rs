@@ -34,8 +34,7 @@ use runtime::{Runtime, Shared};
 #[derive(Debug)]
 pub(super) struct Character {
     merged: Merged,
-    /// Size of one unit of the motion table, in metres of model space. The gate uses this table to decide which bones to
-    /// sample.
+    /// Length of one unit of the motion table, in model units. The gate uses this table to decide which bones to sample.
     unit: f32,
     /// Largest displacement of a vertex, in model units, per unit of the influence fade λ ([`Extent::stray`]).
     stray: f32,
@@ -125,7 +124,7 @@ impl Character {
         self.plays.resize(capacity, Playing::REST);
         self.changed.all(capacity);
         self.layers.iter_mut().for_each(|layer| layer.resize(capacity));
-        // A new scene also has the epoch 0. With equal epochs, start times are rounded alike.
+        // A new scene starts with epoch 0. With the same epoch, start times are rounded as in a new scene.
         self.epoch = 0.0;
     }
 

@@ -11,8 +11,8 @@ use crate::scene::playing::Playing;
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
 
-/// Largest time in seconds between the epoch and the scene's time. Beyond it, the epoch moves to the scene's time, because
-/// `f32` times lose precision.
+/// Largest time in seconds between the scene's time and the epoch, which is the origin of the device's `f32` times. Beyond
+/// it, the epoch moves to the scene's time, because large `f32` times lose precision.
 const EPOCH: f64 = 128.0;
 
 impl Character {

@@ -58,7 +58,7 @@ impl Character {
         }
     }
 
-    /// The path of a sphere that a bone of an instance carries, through all poses of the instance's present clip and layers.
+    /// The path of the sphere `carried`, which moves with a bone, through all poses of the instance's present clip and layers.
     pub fn path_of(&self, index: u32, bone: usize, carried: &BoundingSphere) -> BonePath {
         let path = BonePath::new(&self.merged.model, self.plays[index as usize].clip as usize, bone, carried);
         match &self.reach {

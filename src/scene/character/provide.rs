@@ -12,8 +12,8 @@ use super::Character;
 use super::runtime::{Runtime, is_out_of_memory};
 
 impl Character {
-    /// Allocates the pages that a frame's views need. A chunk is divided if its pages would exceed a buffer binding of the
-    /// device. If memory is short, the result has an LOD bias above 1, which makes levels coarser.
+    /// Allocates the pages that a frame's views need. A chunk is divided if its pages would exceed the device's largest
+    /// buffer binding. If memory is short, the result has an LOD bias above 1, which makes levels coarser.
     pub(super) fn provide_pages(&mut self, gpu: &Gpu, seen: &SeenBy<'_>) -> Result<Provided, Error> {
         let lod_bias = match self.runtimes.iter().all(Runtime::is_full) {
             true => 1.0,
@@ -47,7 +47,7 @@ impl Character {
         }
     }
 
-    /// Divides chunks that need more pages than a buffer binding holds.
+    /// Divides chunks that need more pages than fit into a buffer binding.
     fn divide(&mut self, gpu: &Gpu, seen: &Seen<'_>) -> Result<(), Error> {
         if self.is_memory_short {
             return Ok(());

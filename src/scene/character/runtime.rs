@@ -68,7 +68,8 @@ pub(in crate::scene) struct Runtime {
     pub paging: Vec<Paging>,
     pub weights: Vec<MorphWeightsJob>,
     pub assign: Vec<Job>,
-    /// Two jobs: add the driven bones to the bones to sample, then list all bones to sample. `None` without driven bones.
+    /// Two jobs. The first marks the driven bones as bones to sample, and the second lists all marked bones. `None` without
+    /// driven bones.
     pub driven: Option<(Job, CompactJob)>,
     /// The version of the driven bones that `driven` was prepared for.
     pub driven_version: u64,
@@ -174,7 +175,7 @@ impl Runtime {
     }
 
     /// Allocates at least `needed` pages for each mesh. Returns two flags: whether pages were replaced, and whether memory
-    /// ran out. If memory runs out for a mesh, its [`Paging::most`] becomes its present number of pages.
+    /// ran out. If memory runs out for a mesh, [`Paging::most`] is set to the mesh's present number of pages.
     pub fn provide(&mut self, gpu: &Gpu, needed: &[u32]) -> Result<[bool; 2], Error> {
         let (mut is_replaced, mut is_short) = (false, false);
         for ((skin, paging), needed) in self.skins.iter_mut().zip(&mut self.paging).zip(needed) {
