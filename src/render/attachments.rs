@@ -34,7 +34,7 @@ pub enum Attachments {
 type Wanted = (fn(Format) -> bool, &'static str);
 
 impl Attachments {
-    /// The layers that can be drawn into these attachments besides depth.
+    /// The layers that can be drawn into these attachments, besides [`Layer::Depth`].
     pub(super) fn layers(&self) -> &'static [Layer] {
         match self {
             Self::Color => &[Layer::Color, Layer::Transparent],

@@ -97,8 +97,8 @@ impl TargetFormat {
         Self::holding(Attachments::Measure, &[Format::Rgba32Float, Format::Rg32Uint])
     }
 
-    /// A format for [`Layer::Own`] and this output. `formats` has one colour format for each colour that the output writes. Depth
-    /// is `Depth32Float` that grows with distance, with one sample.
+    /// A format for [`Layer::Own`] and this output, with one sample. `formats` has one colour format for each colour that the
+    /// output writes. Depth is `Depth32Float` that grows with distance.
     pub fn of_output(output: &OutputProgram, formats: &[Format]) -> Self {
         Self::holding(Attachments::Own(output.clone()), formats)
     }

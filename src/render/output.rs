@@ -99,7 +99,7 @@ impl OutputProgram {
             }
         }
         let least = Program::Own(KindProgram::least()?);
-        // Entry points that write no depth do not use the members of the output's struct, which are not known yet.
+        // The members of the output's struct are not known yet. Entry points that write no depth do not use these members.
         let mut generated = least.generated();
         generated.kind.deep = false;
         let moves = ["last_position", "velocity_write"].iter().any(|name| code.contains(name));

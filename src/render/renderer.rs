@@ -289,7 +289,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// The instance lists of a part that a layer draws.
+    /// The instance lists from which a layer draws a part.
     fn lists_of(&self, part: &Specialization, transition: Transition, layer: Layer) -> Vec<ListDraw> {
         let is_transparent = layer == Layer::Transparent;
         let fading = match transition {
@@ -319,7 +319,7 @@ impl Renderer {
         lists.into_iter().chain(hiding).map(|list| list.fade).collect()
     }
 
-    /// Draws the parts of an object. `lists` returns the instance lists of a part that are drawn.
+    /// Draws the parts of an object. `lists` returns the instance lists from which a part is drawn.
     fn draw_object<'a>(
         &'a self,
         pass: &mut impl ScenePass<'a>,

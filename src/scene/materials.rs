@@ -22,11 +22,14 @@ impl Scene {
     /// sampling, all textures of these materials are uploaded at once. This allocates memory, and render bundles must
     /// be recorded again.
     ///
-    /// Some changes may need a pipeline that a renderer has not compiled: the first material with [`Alpha::Mask`] or
-    /// [`Alpha::Dithered`] among opaque ones, and the first with a normal map. The same holds for a material that is
-    /// drawn alone: adding its first texture, or removing its last one. After such a change, call
-    /// [`Renderer::prepare`](crate::render::Renderer::prepare). Without this call,
-    /// [`Renderer::draw`](crate::render::Renderer::draw) reports that the object is not compiled.
+    /// Some changes may need a pipeline that a renderer has not compiled:
+    ///
+    /// - the first material with [`Alpha::Mask`] or [`Alpha::Dithered`] among opaque materials;
+    /// - the first material with a normal map;
+    /// - the first texture, or the removal of the last texture, of a material that is drawn alone.
+    ///
+    /// After such a change, call [`Renderer::prepare`](crate::render::Renderer::prepare). Without this call,
+    /// [`Renderer::draw`](crate::render::Renderer::draw) returns an error.
     ///
     /// A material cannot change between blended and not blended, because blended surfaces are drawn in a layer of their
     /// own.
@@ -34,8 +37,8 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, and for a material or an image
     /// that the model does not have. [`InputError`] also for values out of range, for a change from or to blending, and
-    /// for a sampling that the other materials drawn together with this one do not have. [`crate::gpu::GpuError`].
-    /// After an error, the material is unchanged.
+    /// for a sampling that differs from the sampling of the materials drawn together with this one.
+    /// [`crate::gpu::GpuError`]. After an error, the material is unchanged.
     ///
     /// # Examples
     ///
@@ -85,9 +88,9 @@ impl Scene {
     /// memory, and render bundles must be recorded again.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for an image without texels or
-    /// larger than the device's textures, and for an index above the number of images. [`crate::gpu::GpuError`]. After
-    /// an error, the images are unchanged.
+    /// [`InputError`] for an object that is not of this scene, for terrain and reliefs, for an image without texels,
+    /// for one that is too large for a texture of the device, and for an index above the number of images.
+    /// [`crate::gpu::GpuError`]. After an error, the images are unchanged.
     ///
     /// # Examples
     ///

@@ -137,7 +137,7 @@ use object::Object;
 use statistics::{SceneCounts, StageTimer};
 use watch::Watch;
 
-/// Largest number of recorded frames that may wait for their submission or for the end of their execution on the
+/// Largest number of frames in flight: frames that are recorded, but not yet submitted or not yet executed by the
 /// device.
 pub const FRAMES_IN_FLIGHT: usize = 4;
 
@@ -179,8 +179,8 @@ pub struct Scene {
     objects: Slots<Object>,
     budget: ErrorBudget,
     light: Light,
-    /// `now` is the scene's time in seconds. `step` is the argument of the last [`Scene::advance`], and 0 after each
-    /// frame.
+    /// `now` is the scene's time in seconds. `step` is the argument of the last [`Scene::advance`]. Each frame resets
+    /// `step` to 0.
     now: f64,
     step: f32,
     /// Motion history: whether the placements and vertices of the last frame are kept.
@@ -409,8 +409,9 @@ impl Scene {
     }
 
     /// The factor by which the last frame enlarged the displacement that an object's levels of detail may use. The
-    /// factor is 1 as long as all views keep their [`Quality::pixels`]. It exceeds 1 when the device has no memory left
-    /// for the vertices of a character's visible instances. [`Scene::refresh`] tries again to allocate that memory.
+    /// factor is 1 as long as the error in all views stays within [`Quality::pixels`]. It exceeds 1 when the device has
+    /// no memory left for the vertices of a character's visible instances. [`Scene::refresh`] tries again to allocate
+    /// that memory.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.

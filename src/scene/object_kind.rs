@@ -103,8 +103,8 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
 
     // Methods of a frame, in the order of their calls.
 
-    /// Finishes cross-fades of clips that end by scene time `now`, in seconds. Returns the indices of instances whose
-    /// bounding spheres changed.
+    /// Ends all cross-fades between clips that are complete at scene time `now`, in seconds. Returns the indices of
+    /// instances whose bounding spheres changed.
     fn settle(&mut self, now: f64) -> Vec<u32> {
         let _ = now;
         Vec::new()
@@ -169,7 +169,8 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         Ok(around.unwrap_or([instance.place.translation; 2]))
     }
 
-    /// The corners of a larger box that takes less time to compute. `None` if the smallest box takes no more time.
+    /// The lowest and highest corner of a box that may be larger than [`ObjectKind::tight_box`], but is faster to
+    /// compute. `None` if the kind has no such box.
     fn wide_box(&self, instance: &Placed) -> Result<Option<[DVec3; 2]>, InputError> {
         let _ = instance;
         Ok(None)
@@ -236,7 +237,7 @@ pub(super) struct OnDevice {
 }
 
 impl OnDevice {
-    /// Resources that consist of chunks alone.
+    /// Resources that consist only of chunks.
     pub fn chunks(chunks: Vec<Chunk>) -> Self {
         Self { chunks, other: Box::new(()) }
     }

@@ -20,8 +20,8 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for a configuration or patches out of bounds, for an empty list of patches, and for a patch that
-    /// is given twice. [`InputError`] also for fields without a margin, fields of another size, and fewer fields than
-    /// patches. [`crate::gpu::GpuError`].
+    /// is given twice. [`InputError`] also for fields without a margin, fields whose size does not match the
+    /// configuration, and fewer fields than patches. [`crate::gpu::GpuError`].
     ///
     /// # Examples
     ///
@@ -61,8 +61,8 @@ impl Scene {
     /// approximate size of a model.
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with
-    /// images that are larger than the device's textures; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, and for a model without triangles, with invalid meshes or materials,
+    /// or with images that are too large for a texture of the device; [`crate::gpu::GpuError`].
     ///
     /// # Examples
     ///
@@ -102,8 +102,8 @@ impl Scene {
     /// only level of detail.
     ///
     /// # Errors
-    /// [`InputError`] for a capacity out of range, for a model without triangles, with invalid meshes or materials, or with
-    /// images that are larger than the device's textures; [`crate::gpu::GpuError`].
+    /// [`InputError`] for a capacity out of range, and for a model without triangles, with invalid meshes or materials,
+    /// or with images that are too large for a texture of the device; [`crate::gpu::GpuError`].
     pub fn add_character(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
         self.add_character_with(model, capacity, &CharacterOptions::default())
     }
@@ -183,7 +183,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`InputError`] for a capacity out of range, for maps, options or a mesh that do not fit each other, for a mesh with
-    /// values that are not finite, and for images without texels or larger than the device's textures;
+    /// values that are not finite, and for images without texels or too large for a texture of the device;
     /// [`crate::gpu::GpuError`].
     ///
     /// # Examples

@@ -36,8 +36,8 @@ pub struct RootOptions<'a> {
     pub taken: Taken,
 }
 
-/// The index of a model's bone. `name_or_index` is the bone's name, or its index in digits. A bone whose name is that
-/// number takes precedence.
+/// The index of a model's bone. `name_or_index` is the bone's name, or its index in digits. Names take precedence over
+/// indices.
 ///
 /// # Errors
 /// [`InputError`] that lists up to 20 bones.

@@ -1,13 +1,14 @@
-//! A controller that limits the triangles of a view until frames keep a time limit.
+//! A controller that limits the triangles of a view, so that frames stay within a time limit.
 
 /// Time constant of the moving average of frame times, in frames.
 const FRAMES: f32 = 6.0;
 
-/// Dead band: the triangle limit stays while frames are shorter than the time limit by at most this fraction.
+/// Dead band, as a fraction of the time limit. The triangle limit does not change while frames are shorter than the
+/// time limit by at most this fraction.
 const DEAD_BAND: f32 = 0.05;
 
-/// Factors of the triangle limit per frame: the smallest when it falls (`FALL`), and the largest when it rises
-/// (`RISE`).
+/// Bounds of the factor by which the triangle limit changes in one frame: the smallest factor (`FALL`), and the largest
+/// factor (`RISE`).
 const FALL: f32 = 0.85;
 const RISE: f32 = 1.04;
 
@@ -19,10 +20,10 @@ const LEAST: f32 = 1e3;
 
 /// Adjusts a triangle limit so that frames take a given time.
 ///
-/// Frame times are averaged over some frames. If the average exceeds the time limit, or is shorter by more than a
-/// twentieth, the triangle limit is multiplied by a factor: the square root of the time limit over the average. This
-/// factor is bounded, so that the triangle limit falls faster than it rises. So the triangle limit settles from one
-/// side, and does not oscillate around a level of detail that takes too long.
+/// Frame times are averaged over some frames. The triangle limit changes if the average exceeds the time limit, or is
+/// shorter by more than a twentieth. The limit is then multiplied by √(time limit / average). The bounds of this factor
+/// make the triangle limit fall faster than it rises. It therefore settles from one side, and does not oscillate around
+/// a level of detail that takes too long.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pacer {
     limit: Option<f32>,

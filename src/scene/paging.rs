@@ -27,8 +27,8 @@ const COARSER: f32 = 1.25;
 /// The largest LOD bias that is tried.
 const COARSEST: f32 = 1e6;
 
-/// The level that is assumed for the last frame: the finest. With hysteresis or fades, any other level of the last
-/// frame makes a view draw the same level or a coarser one.
+/// The level of detail that every instance is assumed to have had in the last frame: the finest. With hysteresis or
+/// fades, the present level depends on the last one, and the finest last level leads to the finest present level.
 const FINEST: u32 = 0;
 
 /// Page counts of one mesh for a number of instances.
@@ -106,8 +106,8 @@ impl Held {
 #[derive(Debug)]
 pub(super) struct Seen<'a> {
     object: &'a LodObject,
-    /// For each instance, its smallest metric in any view, before the object's metric scale; `None` if no view may see
-    /// it.
+    /// For each instance, its smallest metric in any view, not yet multiplied by the object's metric scale. `None` if
+    /// no view may see the instance.
     metrics: Vec<Option<f32>>,
 }
 

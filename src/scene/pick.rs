@@ -11,18 +11,17 @@ use crate::scene::object_kind::{Placed, UnitRay};
 use crate::scene::ray::{Hit, Ray, SurfaceHit};
 use crate::shared::lod::instance::{INSTANCE_ALIVE, instance_flags_mask};
 
-/// Relative enlargement of boxes and spheres. It exceeds the rounding of positions that are drawn in `f32`.
+/// Relative enlargement of boxes and spheres. It exceeds the rounding errors of drawn positions, which are `f32`.
 pub(super) const MARGIN: f64 = 1e-5;
 
 impl Scene {
     /// The first hit of a ray on an instance; `None` if the ray hits nothing. Instances are tested in full detail, in
-    /// the pose at the scene's time. Hidden objects are not hit. Triangles are hit only from their visible sides. For a
-    /// relief, the ray hits the mesh instead of the relief. Cut-out pixels are hit like the rest of the mesh.
+    /// the pose at the scene's time. Hidden objects are not hit. Triangles are hit only from their visible sides. A
+    /// relief is hit at its mesh, without the relief's depth. Cut-out pixels are hit like the rest of the mesh.
     ///
-    /// The host knows values of driven bones ([`Scene::drive`]) that [`Poses::write`](crate::scene::Poses::write) wrote
-    /// in the last frame, and uses them. All other bones have the pose at the scene's time. The host does not know
-    /// values that the caller's kernels wrote ([`Poses::of`](crate::scene::Poses::of)). Such bones are hit in the pose
-    /// of the clip.
+    /// Driven bones ([`Scene::drive`]) have the values that [`Poses::write`](crate::scene::Poses::write) wrote in the
+    /// last frame. All other bones have the pose of their clip at the scene's time. This includes bones that the
+    /// caller's kernels wrote ([`Poses::of`](crate::scene::Poses::of)), because the host does not know their values.
     ///
     /// The host first tests the bounding sphere of each instance. If the ray meets the sphere, the host tests every
     /// triangle of a mesh, or the terrain cells below the ray. A character's vertices are all posed and skinned first,
@@ -110,7 +109,7 @@ impl Scene {
     }
 }
 
-/// An instance whose bounding sphere the ray meets. The ray can hit the instance at `distance` or further.
+/// An instance whose bounding sphere the ray meets. The ray cannot hit the instance nearer than `distance`.
 struct Candidate<'a> {
     distance: f64,
     instance: InstanceId,

@@ -1,5 +1,6 @@
-//! Splits meshes that exceed a binding of the device. Each level of detail is cut before its triangles use more
-//! vertices or indices than fit into a piece. Each piece has vertices of its own.
+//! Splits meshes that exceed a binding of the device into pieces. A piece holds triangles of one level of detail. If
+//! the next triangle would exceed the vertices or indices that a piece may have, a new piece begins. Each piece has
+//! vertices of its own.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -68,9 +69,9 @@ pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Merged {
 /// A piece under construction.
 #[derive(Default)]
 struct Piece<'a> {
-    /// For a vertex of the whole mesh, the vertex of the piece.
+    /// Maps vertices of the whole mesh to vertices of the piece.
     slots: HashMap<u32, u32>,
-    /// For a vertex of the piece, the vertex of the whole mesh.
+    /// Maps vertices of the piece to vertices of the whole mesh.
     vertices: Vec<u32>,
     indices: Vec<u32>,
     /// Parts with triangles in the piece, each with the end of its range in `indices`.

@@ -20,16 +20,16 @@ use crate::shared::lod::instance::CELL_SIZE;
 /// use glam::{Quat, Vec3};
 /// use relievo::scene::Placement;
 ///
-/// // A million units east: half a unit counts still.
+/// // A million units east, half a unit is still represented exactly.
 /// let far = Placement::at_world([1e6 + 0.5, 0.0, 0.0]);
 /// assert_eq!((far.cell, far.offset), ([3906, 0, 0], Vec3::new(64.5, 0.0, 0.0)));
 /// assert_eq!(far.world().x, 1e6 + 0.5);
 ///
-/// // What faces south (+Z) faces east (+X) after a quarter turn. Here the model is half as large, too.
+/// // After a quarter turn, a side that faced south (+Z) faces east (+X). The model is drawn at half its size.
 /// let place = Placement::at([3.0, 0.0, 4.0]).turned(std::f32::consts::FRAC_PI_2).scaled(0.5);
 /// assert!((place.turn * Vec3::Z).distance(Vec3::X) < 1e-6);
 ///
-/// // Any rotation will do, and a factor for each axis of the model. One that is negative mirrors.
+/// // Any rotation, and one scale factor per axis of the model. A negative factor mirrors the model.
 /// let tilted = Placement { turn: Quat::from_rotation_x(0.3), scale: Vec3::new(-1.0, 1.0, 2.0), ..place };
 /// tilted.checked()?;
 /// # Ok::<(), relievo::InputError>(())
@@ -93,8 +93,8 @@ impl Placement {
     }
 
     /// The placement after a motion in model space, such as [`Scene::root_motion`](crate::scene::Scene::root_motion):
-    /// this placement times the motion. The motion's scale is ignored. The result is exact if the scale of the
-    /// placement has the same size along all axes, mirrored or not.
+    /// this placement times the motion. The motion's scale is ignored. The result is exact if the placement's scale
+    /// factors have the same absolute value along all axes.
     #[must_use]
     pub fn moved_by(self, motion: &Transform) -> Self {
         let ahead = self.turn * (self.scale * Vec3::from(motion.translation));

@@ -14,8 +14,8 @@ pub struct Quality {
     /// If the device has no memory left for the vertices of a character's visible instances, the character's error
     /// exceeds this limit. [`Scene::lod_bias`](super::Scene::lod_bias) returns the factor.
     pub pixels: f32,
-    /// The largest number of triangles that the view draws in one layer, at least 1. Back faces and both levels of
-    /// fades count. `None`, the default, means no limit.
+    /// The largest number of triangles that the view draws in one layer, at least 1. Back faces count, and so do both
+    /// levels of a fade. `None`, the default, means no limit.
     ///
     /// In each frame, the device finds the smallest factor at which the triangles fit the limit. The factor multiplies
     /// the metric by which each instance's level of detail is chosen. So instances get the levels that they would have

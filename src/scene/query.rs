@@ -53,9 +53,9 @@ impl Scene {
     }
 
     /// The transform from an instance's model space to world coordinates, in world units. An attached mesh
-    /// ([`Scene::attach`]) follows its bone in the pose at the scene's time, which the host samples. Bones that were
-    /// written in the last frame are treated as in [`Scene::pick`]. For every other instance, the transform equals
-    /// [`Scene::placement`].
+    /// ([`Scene::attach`]) follows its bone. The host samples the bone's pose at the scene's time. Bones that were
+    /// written in the last frame are treated as in [`Scene::pick`]. For an instance that is not attached, the transform
+    /// equals [`Scene::placement`].
     ///
     /// The result is not a [`Placement`], because bones may shear a mesh. Without shear,
     /// `to_scale_rotation_translation()` splits the result into the parts of a placement.
@@ -135,8 +135,8 @@ mod drawn {
     /// How a view drew an instance.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct DrawnAs {
-        /// Index of the list that contains the instance: 2 · level, plus 1 if it is mirrored. A fading instance is
-        /// in the list of the finer level.
+        /// Index of the list that contains the instance: 2 · level, plus 1 if the instance is mirrored. A fading
+        /// instance is in the list of the finer level.
         pub list: u32,
         /// Progress of the geomorph to the next coarser level, 0 to 1.
         pub way: f64,

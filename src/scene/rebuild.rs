@@ -28,9 +28,9 @@ impl Scene {
     /// [`Renderer::rebuild_with_layout`]: crate::render::Renderer::rebuild_with_layout
     ///
     /// # Errors
-    /// The error of [`Scene::rebuild`]. After this error, nothing has changed. Otherwise, the first error of a part,
-    /// with a path that starts with `parts[0]`, `parts[1]` and so on. After this error, the scene and the parts before
-    /// the failed part are rebuilt; all other parts are not.
+    /// - If [`Scene::rebuild`] fails, its error. Nothing has changed.
+    /// - If a part fails, the error of that part, with a path that starts with `parts[0]`, `parts[1]` and so on. The
+    ///   scene and the parts before the failed part are rebuilt; all other parts are not.
     ///
     /// # Examples
     ///

@@ -124,8 +124,8 @@ impl Scene {
         watch.last.as_ref()
     }
 
-    /// The index of a character's bone in the skeleton. `name_or_index` is the bone's name, or its index in digits. A
-    /// bone whose name is that number takes precedence.
+    /// The index of a character's bone in the skeleton. `name_or_index` is the bone's name, or its index in digits.
+    /// Names take precedence over indices.
     ///
     /// # Errors
     /// [`InputError`] for an instance that does not exist any more or is no character, and for a bone that the

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::scene::drawable::{DrawnObject, DrawnView};
 use crate::scene::specialization::Specialization;
 
-/// The bound in the error for missing pipelines; it names the remedy.
+/// Text of the error for missing pipelines ([`InputError::bound`]). It names the remedy.
 const PREPARE: &str = "must be compiled for this renderer: call Renderer::prepare after an object or a SunShadow was added, and \
                        after Scene::set_material or Scene::set_level_of_detail changed the object";
 

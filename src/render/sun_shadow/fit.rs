@@ -1,5 +1,5 @@
-//! Placement of the sun's shadow map: around a sphere that contains everything that the cameras show, at whole texels of a grid
-//! that is fixed in the world. `docs/shadows.md` explains the choice.
+//! Placement of the sun's shadow map. The map covers a sphere that contains everything the cameras show. It moves only by whole
+//! texels of a grid that is fixed in the world. `docs/shadows.md` explains the choice.
 
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
 
@@ -9,8 +9,8 @@ use crate::scene::{Camera, Depth, Placement};
 /// The largest distance of a caster from the map's center towards the light, in map radii.
 const REACH: f64 = 7.0;
 
-/// Fraction of the map's radius over which shadows fade (`SHADOW_FADE` of `wgsl/render/scene_shadow.wgsl`), plus some
-/// texels.
+/// Fraction of the map's radius that is reserved for the fade of shadows (`SHADOW_FADE` of
+/// `wgsl/render/scene_shadow.wgsl`). It includes a margin of some texels.
 const FADE: f64 = 0.07;
 
 /// Number of permitted map radii per octave. The radius is rounded up to one of them, so that it stays constant under small

@@ -20,13 +20,14 @@ const LEAST_SIZE: u32 = 16;
 /// The map holds the depth of the first caster that the light meets. In every frame, [`SunShadow::fit`] places the
 /// map around everything that the views show up to a distance, and [`SunShadow::draw`] draws the map.
 ///
-/// Casters are all instances that cast ([`Scene::set_casts_shadow`]) and share a bit with the mask of [`SunShadow::set_mask`].
-/// This includes casters outside the views, up to three map widths away towards the light. Triangles stop light from both sides.
+/// Casters are all instances that cast shadows ([`Scene::set_casts_shadow`]) and whose visibility mask shares a bit with the mask
+/// of [`SunShadow::set_mask`]. This includes casters outside the views, up to three map widths away towards the light. Triangles
+/// stop light from both sides.
 /// Reliefs cast shadows with the depth of the relief, and cut-out surfaces only where they are opaque. Blended surfaces cast no
 /// shadow. All surfaces receive shadow: in the crate's shading, and as `Surface.sunlit` in the caller's shading
 /// ([`Renderer::with_shading`]).
 ///
-/// A texel covers 1/`size` of the map's width, about 1.8 `range` / `size` for a field of view of 0.8. Shadow edges are
+/// A texel covers 1/`size` of the map's width: about 1.8 `range` / `size` for a field of view of 0.8 radians. Shadow edges are
 /// about two texels wide. A caster closer than three texels to a surface may not shade it. Shadows are stable while the
 /// camera moves and turns, because the map moves by whole texels. Shadow edges shift when the light moves, and when the field
 /// of view or `range` changes much. `docs/shadows.md` has the derivation.
@@ -201,7 +202,7 @@ impl SunShadow {
     }
 
     /// Creates the map and all pipelines anew after the device was lost and the scene was rebuilt on another one
-    /// ([`Scene::rebuild_async`]). Rebuild the views too ([`View::rebuild`]), and fit the map to them again.
+    /// ([`Scene::rebuild_async`]). Also rebuild the views ([`View::rebuild`]), and fit the map to them again.
     ///
     /// # Errors
     /// The errors of [`View::rebuild`] and [`Renderer::rebuild`]; [`GpuError`] for other failures of the device.

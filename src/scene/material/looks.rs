@@ -19,13 +19,13 @@ impl Looks {
     /// No materials and no images.
     pub const NONE: Self = Self { materials: Vec::new(), images: Vec::new() };
 
-    /// Moves the materials and images out of a model, which keeps none.
+    /// Moves all materials and images out of a model.
     pub fn taken(model: &mut Model) -> Self {
         Self { materials: std::mem::take(&mut model.materials), images: std::mem::take(&mut model.images) }
     }
 
-    /// The index of a material. `name_or_index` is the material's name, or its index in digits. A material whose name
-    /// is that number takes precedence.
+    /// The index of a material. `name_or_index` is the material's name, or its index in digits. Names take precedence
+    /// over indices.
     ///
     /// # Errors
     /// [`InputError`] that lists up to 20 materials.
@@ -82,8 +82,8 @@ impl Looks {
     /// image; the result is then `None`.
     ///
     /// # Errors
-    /// [`InputError`] for an image without texels or larger than the device's textures, and for an index above the
-    /// number of images.
+    /// [`InputError`] for an image without texels, for one that is too large for a texture of the device, and for an
+    /// index above the number of images.
     pub fn set_image(
         &mut self,
         gpu: &Gpu,

@@ -28,7 +28,7 @@ pub(crate) struct PartMaterials {
     pub cut_out: bool,
     /// Whether any material has a texture.
     pub textured: bool,
-    /// The object's material for each table entry; `None` for opaque white.
+    /// For each table entry, the index of the object's material; `None` for opaque white.
     materials: Vec<Option<usize>>,
     entries: Buffer<SceneMaterial>,
     colors: Layers,
@@ -109,8 +109,8 @@ impl PartMaterials {
         self.colors.images.contains(&image) || self.normals.images.contains(&image)
     }
 
-    /// Makes the part's materials again after `looks` has changed. If no texture or sampling is new, only the table
-    /// changes. With a new texture, a new sampling or `anew`, all textures are uploaded again.
+    /// Recreates the part's materials after `looks` has changed. If a texture or sampling is new, or if `anew` is true,
+    /// all textures are uploaded again. Otherwise, only the table changes.
     ///
     /// # Errors
     /// As for [`PartMaterials::new`].
@@ -137,7 +137,8 @@ impl PartMaterials {
     }
 
     /// Sampling of the colour textures, then of the normal maps, after the material at `index` has replaced `old`. If
-    /// no other material of the part has such a texture, the new material decides. Otherwise the sampling stays.
+    /// only this material has a colour texture, it decides the sampling of colour textures. Otherwise, that sampling
+    /// does not change. The rule for normal maps is analogous.
     ///
     /// # Errors
     /// [`InputError`] if the new material has another sampling than the other materials of the part.

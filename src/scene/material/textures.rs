@@ -9,8 +9,8 @@ use crate::gpu::{Gpu, GpuError};
 use crate::surface::mips::Mips;
 use crate::{Error, InputError, srgb};
 
-/// Largest number of texels in the finest mip level of a texture array, all layers together (256 MiB). In a larger
-/// array, all images are halved in width and height.
+/// Largest number of texels in the finest mip level of a texture array, summed over all layers (256 MiB). If an array
+/// is larger, the width and height of all its images are halved until it fits.
 const MAX_TEXELS: u64 = 1 << 26;
 
 /// The meaning of an image's channels.
@@ -83,8 +83,8 @@ impl Texels {
     }
 }
 
-/// Checks that an image has texels, and is at most as wide and high as the device's textures. `path` names the image in
-/// errors.
+/// Checks that an image has texels, and that it is not too wide or too high for a texture of the device. `path` names
+/// the image in errors.
 ///
 /// # Errors
 /// [`InputError`] with the image's width and height.
@@ -182,7 +182,7 @@ mod tests {
         assert!(matches!(resized(&image, [2, 1], Texels::Color), Cow::Borrowed(_)));
         let color = resized(&image, [4, 1], Texels::Color).into_owned();
         let data = resized(&image, [4, 1], Texels::Normal).into_owned();
-        // A quarter of the light is 137 in sRGB; a quarter of the data is 64.
+        // The second pixel is a quarter white. For colours, a quarter of the light is 137 in sRGB; for data, it is 64.
         assert_eq!((color.get_pixel(1, 0).0[0], data.get_pixel(1, 0).0[0]), (137, 64));
         assert_eq!((color.get_pixel(0, 0).0[0], color.get_pixel(3, 0).0[0]), (0, 255));
     }

@@ -28,8 +28,8 @@ pub(crate) struct MeshGeometry {
     pub page_table: Buffer<u32>,
     /// Texture coordinates, one pair per vertex of the mesh.
     pub uv: Buffer<[f32; 2]>,
-    /// Two tables, one after the other. The first has the index of each vertex's material in the part's table. The
-    /// second starts at `partners` and has the partner of each vertex, towards which the vertex geomorphs.
+    /// Two tables, one after the other. The first has, for each vertex, the index of its material in the part's
+    /// material table. The second starts at `partners` and has, for each vertex, the partner towards which it geomorphs.
     pub material_of: Buffer<u32>,
     /// Offset of the second table in `material_of`; 0 if there is none, so that levels cannot geomorph.
     pub partners: u32,

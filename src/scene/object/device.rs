@@ -35,7 +35,8 @@ impl Object {
         self.kind.made_on(MakeOn { gpu, layouts, looks, capacity }).await
     }
 
-    /// Replaces the object's device resources by those made on another device. The state of all instances is reset.
+    /// Replaces the object's device resources with `on_device`, which was made on another device. The state of all
+    /// instances is reset.
     pub(in crate::scene) fn adopt(&mut self, on_device: OnDevice) {
         let OnDevice { chunks, other } = on_device;
         self.kind.adopt(other);
@@ -54,7 +55,7 @@ impl Object {
         }
     }
 
-    /// Finishes cross-fades of clips that end by scene time `now`, in seconds.
+    /// Ends all cross-fades between clips that are complete at scene time `now`, in seconds.
     pub(in crate::scene) fn settle(&mut self, now: f64) {
         for index in self.kind.settle(now) {
             // A character that carries an attached mesh keeps its larger sphere until it plays another clip.

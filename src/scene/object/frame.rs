@@ -133,8 +133,8 @@ pub(in crate::scene) fn laid_out(
 ) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
     let (mut all, mut draws, mut sorted) = (Vec::new(), Vec::new(), Vec::new());
-    // The triangle unit keeps sums of triangles over all instances below 2^31. With both levels of all fades, the sums
-    // stay below 2^32.
+    // In triangle units, the full meshes of all instances sum to less than 2^31. A fade draws two levels, so no sum
+    // reaches 2^32.
     let most = |object: &Object| {
         let triangles = object.triangles().first().copied().unwrap_or(0);
         object.capacity().next_multiple_of(BLOCK as usize) as u64 * u64::from(triangles)

@@ -55,7 +55,7 @@ pub(crate) struct Object {
     pub(super) lod_bias: f32,
     /// Dirty: LOD bias or visibility must be uploaded again.
     pub(super) is_retuned: bool,
-    /// Dirty: the ranges of rebound drawables must be uploaded again.
+    /// Dirty: drawables were bound again, so their ranges must be uploaded again.
     is_rebound: bool,
     /// Number of the object's handle, which shading reads.
     pub(super) handle: u32,

@@ -28,7 +28,7 @@ struct Inner {
     text: String,
     /// Names that the text declares.
     declared: Vec<String>,
-    /// Whether vertices move in model space, so that the text has a function for the last position.
+    /// Whether vertices move in model space. If so, the text has a function for the last position.
     moves: bool,
     entries: Vec<wgpu::BindGroupLayoutEntry>,
 }
@@ -106,7 +106,7 @@ impl KindProgram {
     /// [`Renderer::with_shading`](crate::render::Renderer::with_shading).
     ///
     /// WebGPU limits the bindings of each shader stage. Of the default limits, the crate uses 3 storage buffers (4 in
-    /// the vertex stage), 2 uniform buffers, 1 texture and 1 sampler. A kind and the caller's shading share the others:
+    /// the vertex stage), 2 uniform buffers, 1 texture and 1 sampler. A kind and the caller's shading share the rest:
     /// 5 storage buffers, 10 uniform buffers, 15 textures and 15 samplers in the fragment stage.
     ///
     /// # Errors
@@ -231,8 +231,8 @@ fn signature(name: &str, what: &str) -> String {
 }
 
 impl CallerText<'_> {
-    /// Makes an error of naga understandable. A type mismatch outside the caller's text is in a generated entry point.
-    /// The cause is that this entry point calls a function of the caller that has a wrong signature.
+    /// Adds the required signatures to an error of naga about a type mismatch outside the caller's text. Such an error is
+    /// in a generated entry point, because a function of the caller that it calls has a wrong signature.
     fn explained(&self, name: &str, error: InputError) -> InputError {
         let end = self.refused(std::iter::empty(), String::new());
         let is_of_types = ["Call to", "type"].iter().any(|word| error.bound.contains(word));

@@ -38,7 +38,7 @@ pub(super) struct Terrain {
     spacing: f64,
     /// The source, with the patches in the order of their instances.
     pub source: TerrainSource,
-    /// Blended heights of two recipes, if there is a target.
+    /// Blended heights of two recipes; `None` if the source has only one recipe or fields.
     morphing: Option<Morphing>,
 }
 

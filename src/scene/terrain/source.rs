@@ -31,7 +31,7 @@ pub struct TerrainSource {
     pub(super) textures: Option<Vec<TerrainTexture>>,
     pub(super) shading: Shading,
     pub(super) style: TerrainStyle,
-    /// The recipe towards which the heights are blended, and how far.
+    /// The recipe towards which the heights are blended, and the progress of the blend.
     pub(super) target: Option<(Box<Recipe>, Morph)>,
 }
 

@@ -112,7 +112,7 @@ impl View {
         Ok(self.budget.budget.clone().expect("made above"))
     }
 
-    /// Whether two views share a budget. For a view and itself: whether the view has a budget.
+    /// Whether two views share a budget. If `other` is this view, the result is whether the view has a budget.
     pub(in crate::scene) fn shares_budget_with(&self, other: &View) -> bool {
         match (&self.budget.budget, &other.budget.budget) {
             (Some(own), Some(other)) => Arc::ptr_eq(own, other),

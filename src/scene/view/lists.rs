@@ -35,7 +35,7 @@ pub(in crate::scene) struct ViewPasses<'a> {
 pub(crate) struct SortedLists {
     pub job: Job,
     pub draws: Buffer<SceneDraw>,
-    /// For each draw, the list entry of the only instance that it draws.
+    /// For each draw, the list entry of its single instance.
     pub entries: Buffer<u32>,
 }
 
@@ -66,8 +66,8 @@ pub(crate) struct ViewLists {
     pub(super) decide: Job,
     /// The stages of the budget, which run between `select` and `decide`; `None` without a budget.
     pub(super) budget: Option<BudgetStages>,
-    /// The state of the budget, which `decide` reads. For a view without a budget, the buffer holds a state with which
-    /// `decide` coarsens nothing.
+    /// The state of the budget, which `decide` reads. For a view without a budget, the buffer holds a state that makes
+    /// no level coarser.
     pub(super) budget_state: Buffer<BudgetState>,
     pub(super) list: Job,
     pub(super) attached: AttachedJobs,

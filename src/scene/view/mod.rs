@@ -288,7 +288,8 @@ impl View {
     fn dither_offset(&self, frame: u64) -> UVec2 {
         match self.dither {
             DitherPattern::Still => UVec2::ZERO,
-            // Steps of a knight's move visit all pixels of the pattern.
+            // Each frame moves the pattern by (3, 1) pixels, and every 8th frame by one more row. So the offsets of 64
+            // frames are all different.
             DitherPattern::PerFrame => UVec2::new((3 * frame % 8) as u32, (frame / 8 + frame) as u32 % 8),
         }
     }

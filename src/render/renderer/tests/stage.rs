@@ -254,7 +254,8 @@ impl Canvas {
         from.map_or_else(|| vec![[0; 4]; (SIZE[0] * SIZE[1]) as usize], |from| texels(gpu, from))
     }
 
-    /// The number of texels that differ from the clear value [`OTHER`] in the four-byte colour with index `at`, from 1 on.
+    /// The number of texels in the colour attachment with index `at` that differ from the clear value [`OTHER`]. `at` is at least
+    /// 1, and a texel has four bytes.
     pub fn changed(&self, gpu: &Gpu, at: usize) -> usize {
         let color = self.colors[at].as_ref().expect("a colour");
         texels(gpu, color).iter().filter(|texel| **texel != OTHER.1).count()
