@@ -33,8 +33,8 @@ impl LodCamera {
     }
 }
 
-/// Smallest displacement that any of the cameras allows a sphere, in model units. `scale` is the model's largest scale, which
-/// converts world units to model units.
+/// Smallest displacement that any of the cameras allows a sphere, in model units. `scale` is the largest scale factor from model
+/// units to world units.
 pub fn allowed_by(cameras: &[LodCamera], center: Vec3, radius: f32, scale: f32) -> f32 {
     let least = cameras.iter().map(|camera| camera.allows(center, radius)).fold(MAX_ALLOWED, f32::min);
     (least / scale.max(LEAST_SCALE)).min(MAX_ALLOWED)

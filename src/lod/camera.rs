@@ -16,8 +16,8 @@ pub enum Depth {
     Reversed,
 }
 
-/// Smallest usable length of a plane's normal, as a fraction of the length of the matrix rows. The normal is the difference of
-/// two rows. If it is shorter, f32 rounding of the matrices decides its direction.
+/// Smallest usable length of a plane's normal, as a fraction of the length of a matrix row. The normal is the sum or difference
+/// of two rows. If it is shorter, f32 rounding of the matrices decides its direction.
 const LOST: f64 = 1e-4;
 
 /// A plane that excludes nothing.
@@ -58,8 +58,8 @@ impl LodCamera {
     /// # Errors
     /// [`InputError`] for:
     /// - `camera.view_from_cell` that is not finite, affine and invertible;
-    /// - `camera.clip_from_view` that is not finite or collapses the picture, or whose near plane (as given by `depth`) is not
-    ///   ahead of the eye;
+    /// - `camera.clip_from_view` that is not finite or collapses the picture, or whose near plane (at depth 0, or 1 if reversed)
+    ///   is not ahead of the eye;
     /// - `camera.viewport` without pixels;
     /// - `quality.pixels` that is negative or not finite.
     pub fn new(
@@ -91,7 +91,8 @@ impl LodCamera {
         let [x, y, z, w] = rows(clip_from_cell);
         let perspective = perspective([x, y, w])?;
         let ahead = perspective.as_ref().map(|perspective| perspective.ahead);
-        // Pixels per unit of length across the view direction. w grows by `along` for each unit ahead.
+        // `along` is the growth of w per unit ahead (perspective), or w itself (parallel). `across` holds pixels per unit of
+        // length, perpendicular to the view direction.
         let along = if ahead.is_some() { w.truncate().length() } else { w.w };
         let across = [(x, viewport[0]), (y, viewport[1])].map(|(row, size)| {
             let row = row.truncate() * (0.5 * f64::from(size) / along);
@@ -185,8 +186,8 @@ fn up(number: f64) -> f32 {
 }
 
 /// Whether a matrix to clip space mirrors. If so, a triangle that is counter-clockwise in the source space, seen from outside, is
-/// clockwise on the screen. In a parallel view, depth must grow with distance, because the result is the sign of the determinant
-/// of all three axes.
+/// clockwise on the screen. The result is the sign of a determinant. In a parallel view, the third row of the determinant is the
+/// depth, so depth must grow with distance.
 pub fn is_mirrored(clip: &Mat4) -> bool {
     // Computed in f64, because the product of three small scales may underflow f32.
     let [right, up, depth, ahead] = [0, 1, 2, 3].map(|row| clip.row(row).truncate().as_dvec3());

@@ -44,7 +44,7 @@ pub enum Criterion {
         below: Vec<f32>,
     },
     /// A target triangle count that falls linearly with the distance (thesis A, section 6.1.1). Up to `near`, it is the finest
-    /// level's count; from `far` on, the coarsest level's. The level with the nearest count is drawn.
+    /// level's count. From `far` on, it is the coarsest level's count. The level with the closest count is drawn.
     Ratio {
         /// The point of the instance to which the distance is measured.
         to: DistanceTo,
@@ -63,8 +63,8 @@ pub enum DistanceTo {
     Center,
     /// A point in the model's space.
     Point(Vec3),
-    /// The nearest point of the model's box, which lies along the model's axes. A character's box is a cube around the bounding
-    /// sphere of its first clip.
+    /// The nearest point of the model's box, whose edges are parallel to the model's axes. A character's box is a cube around the
+    /// bounding sphere of its first clip.
     NearestPoint,
 }
 

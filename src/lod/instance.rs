@@ -22,7 +22,7 @@ impl SceneInstance {
         }
     }
 
-    /// The position relative to the corner of another cell, in world units.
+    /// The instance's position relative to the corner of `cell`, in world units.
     pub fn position(&self, cell: IVec3) -> Vec3 {
         (IVec3::from_array(self.cell) - cell).as_vec3() * CELL_SIZE + Vec3::from_array(self.offset)
     }

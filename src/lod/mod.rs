@@ -13,12 +13,13 @@
 //! view. Then record [`assign`] for each character, and draw from the lists.
 //!
 //! Instances of all objects lie in one buffer of [`SceneInstance`]. Each object takes whole blocks of [`BLOCK`] instances. A view
-//! ([`SelectView`]) culls instances by its planes ([`planes`]). Up to [`VIEW_CAMERAS`] cameras ([`LodCamera`]) limit the
-//! displacement. Usually there is one, the view's own camera. A shadow map has the cameras of the views that show the shadows.
+//! ([`SelectView`]) culls instances by its planes ([`planes`]). Up to [`VIEW_CAMERAS`] cameras ([`LodCamera`]) limit how far
+//! levels of detail may displace surfaces. Usually there is one, the view's own camera. A shadow map has the cameras of the views
+//! that show the shadows.
 //!
 //! An instance's position consists of a cell and an offset in world units. A cell is a cube with an edge of [`CELL_SIZE`] world
-//! units. Planes and cameras are relative to the corner of the view's cell. Errors of levels are in model units. To convert an
-//! allowed displacement to model units, it is divided by the instance's largest scale.
+//! units. Planes and cameras are relative to the corner of the view's cell. Errors of levels are in model units. An allowed
+//! displacement in world units, divided by the instance's largest scale, is in model units.
 
 #[doc(hidden)]
 pub mod allowed;

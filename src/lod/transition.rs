@@ -47,7 +47,7 @@ pub enum Transition {
     /// position of the vertex that replaces it in that level.
     ///
     /// Where the last level is unknown, the current level counts as the last one. This applies to an instance that the view did
-    /// not show in the last frame, and to all instances in the first frame after objects were added, removed or grew. If an
+    /// not show in the last frame, and to all instances in the first frame after an object was added, removed or enlarged. If an
     /// instance took the slot of an instance that was removed since the last frame, the removed instance's level counts.
     Geomorph,
     /// Both levels are drawn, each in its own pixels of an ordered pattern that stands still. Together they cover every pixel.
@@ -324,8 +324,8 @@ pub fn finest_of(decision: u32) -> u32 {
     decision_level(decision).min(decision_next(decision))
 }
 
-/// List entries of a decision, at most two: the index of the list, and the entry's word. `index` is the instance's index in the
-/// object.
+/// List entries of a decision, at most two. Each is the index of a list, and the word to write there. `index` is the instance's
+/// index in the object.
 pub fn entries(object: &LodObject, decision: u32, index: u32) -> Vec<(u32, u32)> {
     if decision_seen(decision) == 0 {
         return Vec::new();

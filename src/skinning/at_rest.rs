@@ -10,9 +10,9 @@ use crate::asset::{Influences, Mesh, Model, Skeleton, Skin, Transform};
 /// Bakes a model at rest into a static model. Positions, normals and tangents of all meshes get the values that
 /// skinning computes in the rest pose, with the morph weights at rest.
 ///
-/// The only bone and the only skin of the result are identities, so skinning does not change the positions. Vertices
-/// and triangles keep their order. Triangles are counter-clockwise in the rest pose ([`Mesh::indices`]). The result has
-/// no clips, morph targets or levels of detail. It keeps the model's materials and images.
+/// The result has one bone and one skin, whose transforms are identities, so skinning does not change the positions.
+/// Vertices and triangles keep their order. Triangles are counter-clockwise in the rest pose ([`Mesh::indices`]). The
+/// result has no clips, morph targets or levels of detail. It keeps the model's materials and images.
 ///
 /// # Errors
 /// [`InputError`] for a mesh or a skin that does not match the model, and for baked positions outside the range of

@@ -5,12 +5,13 @@ use glam::{DVec2, DVec3};
 
 use crate::asset::{Mesh, Model};
 
-/// Weight of normals in mesh simplification. Different normals at one point are averaged, which blurs them at corners.
-/// With a larger weight, simplification would therefore keep vertices inside flat faces and cut off the corners.
+/// Weight of normals in mesh simplification. Where several normals meet at one point, simplification uses their mean,
+/// so normals are blurred at sharp corners. With a larger weight, simplification would therefore keep vertices inside
+/// flat faces and cut off the corners.
 pub const NORMAL: f32 = 0.05;
 
-/// Edge of a reference square, as a fraction of the mesh's size. On this square, a texture that slips by some distance
-/// costs the same as a vertex that is off by that distance.
+/// Edge of a square, as a fraction of the mesh's size. Over the area of this square, a texture that slips by some
+/// distance costs as much as a surface that is displaced by that distance.
 const SQUARE: f64 = 3e-2;
 
 /// Texture coordinates of a mesh for simplification. They are 0 if the mesh's material has no texture and no normal

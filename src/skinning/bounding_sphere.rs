@@ -197,7 +197,7 @@ mod tests {
         assert!(points.iter().all(|point| point.distance(center) <= radius) && radius < 1.5);
     }
 
-    /// The clip lasts 90 seconds and contains a jump of a tenth of a second.
+    /// The clip lasts 90 seconds and contains a jump that takes a tenth of a second.
     #[test]
     fn the_sphere_holds_what_long_clips_do() {
         let mut model = crate::samples::creature().expect("valid");

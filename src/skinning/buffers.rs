@@ -41,11 +41,11 @@ pub struct MeshBuffers {
     /// Morph deltas, three vectors each: position delta with the target's index as bits in w; normal delta; tangent
     /// delta.
     pub deltas: Buffer<[[f32; 4]; 3]>,
-    /// Index in the skeleton of each of the skin's bones.
+    /// For each bone of the skin, its index in the skeleton.
     pub bones: Buffer<u32>,
-    /// The inverse bind matrix of each of the skin's bones, as three rows.
+    /// For each bone of the skin, its inverse bind matrix as three rows.
     pub inverse_binds: Buffer<[[f32; 4]; 3]>,
-    /// Number of 32-bit words in a set of the skeleton's bones, one bit per bone.
+    /// Number of 32-bit words that hold one bit per bone of the skeleton.
     pub mask_words: usize,
     /// Number of morph targets.
     pub targets: usize,

@@ -7,9 +7,10 @@ use crate::asset::mesh::{MAX_LEVELS, Mesh};
 
 /// The errors of a character's levels 1, 2 … in the model's units: at most 15, ascending.
 ///
-/// The errors are collected from the levels of all meshes. If there are more than 15, errors are left out one by one:
-/// each time the error whose omission adds the fewest triangles, summed over the logarithm of the distance. A character
-/// with one mesh keeps the mesh's own errors.
+/// The errors are collected from the levels of all meshes. If there are more than 15, errors are left out one by one,
+/// always the one that costs least. The cost of leaving out an error is the number of triangles that it adds at each
+/// viewing distance, integrated over the logarithm of the distance. A character with one mesh keeps the mesh's own
+/// errors.
 pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
     level_errors_within(meshes, MAX_LEVELS)
 }
@@ -65,8 +66,8 @@ impl Step {
         Self { error, logarithm: libm::log(f64::from(error)), lost }
     }
 
-    /// Cost of leaving out the step: the additional triangles that are drawn, summed over the logarithm of the
-    /// distance. The cost is infinite for an error of 0, which is always allowed.
+    /// Cost of leaving out the step: the additional triangles drawn at each viewing distance, integrated over the
+    /// logarithm of the distance. The cost is infinite for an error of 0, which is always allowed.
     fn cost(&self, next: &Self) -> f64 {
         if self.lost == 0 { 0.0 } else { self.lost as f64 * (next.logarithm - self.logarithm) }
     }

@@ -1,6 +1,6 @@
-//! Reduction of bones for distant characters (thesis A sections 8.8 and 9.6). Bones collapse one by one into the nearest kept
-//! bone above them. The next bone to collapse is always the one that displaces skinned vertices least. The result is a
-//! complete [`Model`], which every pass accepts like the original.
+//! Reduction of bones for distant characters (thesis A sections 8.8 and 9.6). Bones collapse one by one into the
+//! nearest kept bone above them. The next one is always the bone whose collapse displaces skinned vertices least. The
+//! result is a complete [`Model`], which every pass accepts like the original.
 //!
 //! # What happens to a collapsed bone
 //!

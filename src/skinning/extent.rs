@@ -107,7 +107,8 @@ impl Extent {
     }
 }
 
-/// Bounds of a mesh at the sampled moments: the corners of its box, and its largest displacement by fade.
+/// Bounds of a mesh at the sampled moments: the corners of its box, and the largest displacement of a vertex per unit
+/// of fade.
 #[derive(Clone, Copy)]
 struct Look {
     low: Vec3,
@@ -156,7 +157,7 @@ fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
 /// the sum over i > 1.
 ///
 /// As a function of 1/λ, the sum divided by λ is piecewise linear, with kinks at λ = wᵢ/w₂, where one of the minima
-/// switches. Its length is therefore largest at a kink.
+/// switches. The length of this vector is convex between kinks, so it is largest at a kink.
 fn stray(influences: &[Influence], points: &[Vec3]) -> f32 {
     let Some(second) = influences.get(1) else { return 0.0 };
     let off = |fade: f32| {
@@ -179,7 +180,8 @@ mod tests {
         let weights = [0.4_f32, 0.3, 0.2, 0.1];
         let influences: Vec<_> =
             (0..).zip(weights).map(|(bone, weight)| Influence { bone, weight }).collect();
-        // At small λ, every minimum is 0.3 λ, which gives (0.3 − 0.6, 0.3). At λ = 1, the sum is (0.3 − 0.2, 0.2).
+        // At small λ, every minimum is 0.3 λ, and the sum divided by λ is (0.3 − 0.6, 0.3). At λ = 1, the sum is
+        // (0.3 − 0.2, 0.2).
         assert!((stray(&influences, &points) - 0.3 * 2.0_f32.sqrt()).abs() < 1e-6);
         assert!((stray(&influences[..2], &points[..2]) - 0.3).abs() < 1e-6);
         assert_eq!(stray(&influences[..1], &points[..1]), 0.0);

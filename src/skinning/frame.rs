@@ -36,8 +36,8 @@ pub struct SkinFrame {
     pub clusters: Clusters,
     /// Levels of detail and morph weights of the instances. The caller may write them.
     pub crowd: SkinnedCrowd,
-    /// The buffer of updated bones. If the model matrices record updated bones, it is the matrices' own buffer.
-    /// Otherwise the caller writes it, and [`SkinFrame::record_updated_bones`] clears it.
+    /// Inputs of the cluster selection. If the model matrices record updated bones, `updated_bones` is the matrices'
+    /// own buffer. Otherwise the caller writes `updated_bones`, and [`SkinFrame::record_updated_bones`] clears it.
     pub select: ClusterSelectBuffers,
     /// The clusters selected by the last [`SkinFrame::record_updated_bones`].
     pub active: ActiveClusters,

@@ -51,7 +51,7 @@ pub struct MeshLevels {
     /// previous level, and at most 0.9 times its triangles. The size is the diagonal of the box around the triangles at
     /// rest. If the largest pose of the clips has more than twice or less than half this size, its size counts instead.
     /// The units of the bind pose do not matter. If meshes share borders, sizes and triangle counts are taken over all
-    /// of these meshes together. They then have the same number of levels with the same errors.
+    /// of these meshes together. All of these meshes have the same number of levels with the same errors.
     pub levels: Vec<MeshLevel>,
     /// For each vertex, the vertex that replaces it at coarser levels; see
     /// [`Mesh::partners`](crate::asset::Mesh::partners).
@@ -220,9 +220,8 @@ fn looked_at(moments: &[Moment]) -> Vec<Moment> {
 /// Computes the levels of all meshes of a model as [`MeshLevels::new`] does, sets them in the model, and returns them.
 ///
 /// Meshes whose borders coincide in every pose are simplified as one. Their borders stay closed at every level, and
-/// they have the same number of levels with the same errors. Every mesh
-/// keeps a triangle wherever its triangles meet a remaining vertex, because errors count the distance to the nearest
-/// triangle of the same mesh.
+/// they have the same number of levels with the same errors. At each remaining vertex where a mesh had triangles, the
+/// mesh keeps at least one, because errors count the distance to the nearest triangle of the same mesh.
 ///
 /// `clips` are the indices of the clips that will be played; none for a static mesh. `poses` is the number of poses
 /// sampled per clip, at most 216,001. To miss no motion, use the largest result of [`poses_of`](super::poses_of); fewer poses are

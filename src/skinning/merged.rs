@@ -59,9 +59,9 @@ pub struct Part {
 /// Meshes with morph targets are merged only with meshes that have the same morph weights in every clip. Parts differ
 /// in their [`PartKey`]. There are at most [`MAX_PARTS`] parts, unless the merged meshes need more. Each use of alpha
 /// in a merged mesh needs one part, or two if only some of its triangles are double-sided. To stay within
-/// [`MAX_PARTS`], parts with few triangles lose their texture sampling first. They get the sampling of the largest part
-/// with the same mesh, alpha and sides. A mesh without textures or normal maps joins a part with any sampling. If many
-/// morphed meshes would exceed [`MAX_DRAWS`], there are fewer levels, but at least one.
+/// [`MAX_PARTS`], the parts with the fewest triangles give up their texture sampling. They get the sampling of the
+/// largest part with the same mesh, alpha and sides. A mesh without textures or normal maps joins a part with any
+/// sampling. If many morphed meshes would exceed [`MAX_DRAWS`], there are fewer levels, but at least one.
 ///
 /// # Errors
 /// [`InputError`] if a mesh or skin does not match the model, if the model lacks a material or image that it names, or

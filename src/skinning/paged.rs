@@ -19,7 +19,7 @@ use crate::skinning::vertex::Blend;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::skinning::vertex::Vertex;
 
-/// Sizes of a [`PagedSkin`]: the number of instances and of vertex pages.
+/// Options of a [`PagedSkin`]: the numbers of instances and vertex pages, and whether previous positions are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PagedSkinOptions {
     /// Number of instances, at least 1.

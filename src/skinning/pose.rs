@@ -135,12 +135,12 @@ pub(super) fn positions_of(
     vertices.iter().map(|vertex| pose.position(mesh, *vertex as usize)).collect()
 }
 
-/// A position under the weighted mean of several bones.
+/// A position, transformed by the weighted mean of several bones.
 fn blended(palette: &[Affine], position: [f32; 3], influences: &[Influence]) -> Vec3 {
     influences.iter().map(|influence| influence.weight * moved(palette, position, influence)).sum()
 }
 
-/// A position under one bone.
+/// A position, transformed by one bone.
 fn moved(palette: &[Affine], [x, y, z]: [f32; 3], influence: &Influence) -> Vec3 {
     let along = |row: &[f32; 4]| row[0] * x + row[1] * y + row[2] * z + row[3];
     Vec3::from(palette[influence.bone as usize].each_ref().map(along))

@@ -24,8 +24,8 @@ impl AttachPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares a job that places the attached meshes of one view, one for each element of `attachments`. Record the job after
-    /// the view's selection, and after the character's model matrices are computed.
+    /// Prepares a job that places the attached meshes of one view, one mesh for each element of `attachments`. Record the job
+    /// after the view's selection, and after the character's model matrices are computed.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for buffers with too few elements (`allowed`, placements, last instances, kept bones);

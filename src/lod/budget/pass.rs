@@ -40,7 +40,7 @@ impl BudgetStage {
     }
 }
 
-/// GPU pass that coarsens the levels of detail of views so that their triangles fit a budget.
+/// GPU pass that coarsens levels of detail, so that the triangles of all views that share a budget fit it.
 #[derive(Debug, Clone)]
 pub struct BudgetPass {
     kernels: [Kernel; 6],

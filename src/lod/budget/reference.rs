@@ -20,7 +20,8 @@ pub struct Budgeted<'a> {
     pub last: u32,
 }
 
-/// Largest pressure, at which every object with a rank is at its coarsest level. Pressure measures how far a budget coarsens.
+/// Largest pressure. Pressure measures how far a budget coarsens. At the largest pressure, every object with a rank is at its
+/// coarsest level.
 pub const MAX_PRESSURE: u32 = BIN_PARTS * ALL_BINS - 1;
 
 fn part_of(factor: f32) -> u32 {
@@ -85,8 +86,8 @@ pub fn pressure(instances: &[Budgeted<'_>], limit: u32) -> Option<u32> {
     None
 }
 
-/// State of a budget after a frame: factors and pressure. `needed` is the pressure that the frame needs; `None` if the limit
-/// cannot be met. `last` is the state after the view's last frame.
+/// State of a budget after a frame: factors and pressure. `needed` is the smallest pressure at which the frame's triangles are
+/// within the limit; `None` if there is none. `last` is the state after the view's last frame.
 pub fn state(view: &SelectView, needed: Option<u32>, last: &BudgetState) -> BudgetState {
     let at_least = needed.unwrap_or(MAX_PRESSURE);
     let before = if view.is_next == 0 { at_least } else { last.pressure };

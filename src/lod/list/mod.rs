@@ -33,8 +33,8 @@ impl LodObject {
         self.lists() * self.instances
     }
 
-    /// Index of a list's first word in a view's list buffer. The list of a level has the number 2 · level + mirrored. The number
-    /// of the list of fading instances is larger by 2 · levels.
+    /// Index of a list's first word in a view's list buffer. `list` is 2 · level + mirrored, where mirrored is 0 or 1. For fading
+    /// instances, add 2 · [`LodObject::levels`].
     pub fn list_begin(&self, list: u32) -> u32 {
         self.first_list + list * self.instances
     }

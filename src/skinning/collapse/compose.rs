@@ -9,8 +9,8 @@ use crate::asset::{Skeleton, Transform};
 /// scale.
 const UNEVEN: f32 = 1e-4;
 
-/// The transform of a bone relative to a bone above it. All bones of the chain except the last have uniform scale: the
-/// same along all axes, except for the signs in `signs`.
+/// The transform of a bone relative to a bone above it, composed along the chain of bones between them. All bones of
+/// the chain except the last have uniform scale: equal along all axes, apart from the signs in `signs`.
 #[derive(Clone, Copy)]
 pub(super) struct Composed {
     pub translation: DVec3,

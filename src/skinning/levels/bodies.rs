@@ -15,7 +15,8 @@ use crate::skinning::pose::{Moment, bones_at};
 /// The largest relative change of a distance within a rigid body between two moments.
 pub(super) const STRETCH: f32 = 1e-4;
 
-/// Bound on the rounding error of a position, as a fraction of the largest summand: 64 times half an ulp of f32.
+/// Bound on the rounding error of a position, as a fraction of the largest summand in its computation: 64 times half an
+/// ulp of f32.
 const ROUNDING: f32 = 4e-6;
 
 /// The rigid bodies of a model's meshes.
@@ -92,12 +93,13 @@ impl Look {
     }
 }
 
-/// Whether a bone stretches every direction equally at two moments, with a tolerance of [`STRETCH`]. The arguments are
-/// the dot products between the columns of its matrix at each moment.
+/// Whether a bone stretches each direction by the same factor at two moments, with a tolerance of [`STRETCH`]. The
+/// arguments are the dot products between the columns of its matrix at each moment.
 fn is_alike(first: &Mat3, other: &Mat3) -> bool {
     let trace = first.x_axis.x + first.y_axis.y + first.z_axis.z;
-    // A lower bound of the smallest eigenvalue: the product of all three eigenvalues, divided by the square of half the
-    // trace. Half the trace is at least the mean of the other two eigenvalues.
+    // A lower bound of the smallest eigenvalue of `first`. The smallest eigenvalue is the determinant divided by the
+    // product of the other two. This product is at most the square of their mean, and their mean is at most half the
+    // trace.
     let least = 4.0 * first.determinant() / (trace * trace);
     let off = (*first - *other).to_cols_array().into_iter().fold(0.0, |most: f32, x| most.max(x.abs()));
     // Three times the largest entry bounds the norm of the difference. The relative difference of squared lengths is

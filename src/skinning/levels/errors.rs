@@ -87,7 +87,7 @@ impl Suspects {
         samples.chain(&mut self.triangles).flatten().for_each(|vertex| *vertex = places[*vertex as usize]);
     }
 
-    /// Raises the errors of levels to the distances that samples have at the vertex positions `points`.
+    /// Raises the error of each level to the largest distance of its samples at the vertex positions `points`.
     fn look(&self, points: &[Vec3], errors: &mut [f32]) {
         let point = |vertex: u32| points[vertex as usize];
         for suspect in &self.all {

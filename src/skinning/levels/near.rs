@@ -156,16 +156,16 @@ fn before(
             return Vec::new();
         }
         let is_own = |at: &u32| whole.member_of(&corners_of(level, *at)) == whole.member[vertex as usize];
-        // There are no candidates for a vertex that no triangle uses. The vertex that replaces it need not be in a
-        // triangle of the level: another vertex at the same position, with other attributes, may be used instead.
+        // A vertex that no triangle uses has no candidates. `target` need not be a corner of the level: another vertex
+        // at its position, with other attributes, may be used instead. Candidates are therefore found by position.
         let target = remap[vertex as usize];
         let own = || ring.two_rings(target, level, point).into_iter().filter(is_own).collect();
         let candidates = rings.entry((target, whole.member[vertex as usize])).or_insert_with(own);
         if !candidates.is_empty() || !is_used[vertex as usize] {
             return search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], candidates);
         }
-        // The whole mesh, or the part of it around the vertex, has become a point. No triangle of the mesh is around
-        // the vertex, so the nearest triangle of the mesh is used instead.
+        // The whole mesh, or the part of it around the vertex, has become a point. No triangle of the mesh is left
+        // around the vertex, so the nearest of the mesh's triangles is used instead.
         let member = whole.member[vertex as usize];
         let all = owned.entry(member).or_insert_with(|| (0..level.len() as u32 / 3).filter(is_own).collect());
         search.nearest_in_each(|key| key[vertex as usize], bodies[vertex as usize], all)
@@ -399,7 +399,7 @@ impl Around {
         self.0.at(point as usize).iter().map(|corner| corner / 3)
     }
 
-    /// The points of all triangles around the points of `vertices`, without duplicates.
+    /// The corner points of all triangles around the given vertices, without duplicates.
     fn beside(&self, vertices: &[u32], level: &[u32], of: &impl Fn(u32) -> u32) -> Vec<u32> {
         let around = vertices.iter().flat_map(|vertex| self.of(of(*vertex)));
         sorted(around.flat_map(|triangle| corners_of(level, triangle)).map(of))

@@ -67,8 +67,8 @@ impl Welded {
     /// the one with the normal closest to the old normal is taken. In flat-shaded triangles, it is the one with the
     /// normal closest to the new triangle's normal.
     ///
-    /// A mesh of which no triangle has three different points becomes a point: one of its vertices replaces all others,
-    /// and one triangle has this vertex in all three corners. Such triangles are not counted.
+    /// If no triangle of a mesh has three different points, the mesh becomes a point: one of its vertices replaces all
+    /// others, and one triangle has this vertex in all three corners. Such triangles are not counted.
     pub(super) fn next(
         &self,
         whole: &Whole<'_>,

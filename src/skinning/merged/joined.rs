@@ -16,7 +16,7 @@ pub(super) struct Union {
 }
 
 impl Union {
-    /// The index of the pair at `at` in a skin. The pair is added if it is new.
+    /// The index in the union for the pair at index `at` of `skin`. The pair is added if it is new.
     fn index(&mut self, skin: &Skin, at: u32) -> u32 {
         let (bone, bind) = (skin.bones[at as usize], skin.inverse_binds[at as usize]);
         *self.of_pairs.entry((bone, bind.map(f32::to_bits))).or_insert_with(|| {

@@ -19,8 +19,8 @@ pub use pass::{MorphWeightsJob, MorphWeightsPass};
 /// tangents (per second) of at most 1, keys 1/8 to 1 s apart, and times up to 16 s.
 ///
 /// Derivation, with ε = 2⁻²⁴: a time of 16 s has a relative error of 3ε, which is 2.3e-5 of a segment of 1/8 s. The
-/// slope of a spline in a segment is at most 1.5·2 + 2·1 = 5, which gives 1.2e-4. The arithmetic of the spline adds
-/// about 40ε.
+/// slope of a spline in a segment is at most 5: up to 3 from the values at both ends, and up to 2 from their tangents.
+/// The error of the time therefore changes a weight by at most 1.2e-4. The arithmetic of the spline adds about 40ε.
 pub const MORPH_WEIGHTS_BOUND: f32 = 1.3e-4;
 
 /// The location of one clip's keyframes in a [`WeightSet`].

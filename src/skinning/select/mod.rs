@@ -2,10 +2,10 @@
 //! selected if one of its bones was updated, if its instance's influences changed, or if morph targets move it and
 //! their weights changed.
 //!
-//! Bones that are not updated thus save the skinning of their vertices, and invisible instances cost nothing. The order
-//! of the list may differ between runs; the set of clusters does not. Vertices of an invisible instance keep their
-//! values. Once the instance is visible again, all of it is skinned. Clusters beyond an instance's level of detail also
-//! keep their values, and are skinned when a finer level includes them.
+//! Vertices whose bones are not updated are therefore not skinned again, and invisible instances cost nothing. The
+//! order of the list may differ between runs; the set of clusters does not. Vertices of an invisible instance keep
+//! their values. Once the instance is visible again, all of it is skinned. Clusters beyond an instance's level of
+//! detail also keep their values, and are skinned when a finer level includes them.
 
 #[cfg(feature = "gpu")]
 mod pass;

@@ -19,7 +19,7 @@ pub use pass::SkinPass;
 /// 2·SKIN_BOUND·L. `docs/rounding-bounds.md` has the derivation.
 pub const SKIN_BOUND: f32 = 5e-6;
 
-/// Factor of [`SKIN_BOUND`] for truncated influences. The sum of the removed weights has an error of 16ε. The division
-/// by the remaining weight, at least 1/8, turns it into 128ε of each weight. The error counts twice, because the
-/// strongest weight is 1 minus the others.
+/// Factor that multiplies [`SKIN_BOUND`] if influences are truncated. The sum of the removed weights has an error of
+/// 16ε. The division by the remaining weight, at least 1/8, turns it into 128ε of each weight. The error counts twice,
+/// because the strongest weight is 1 minus the others.
 pub const TRUNCATED: f32 = 5.0;

@@ -18,7 +18,7 @@ pub struct SkinPass {
     blend: Blend,
 }
 
-/// The buffers that the kernel writes skinned vertices to, and their page table.
+/// The buffers of skinned and morphed vertices, and their page table.
 struct Output<'a> {
     skinned: &'a Buffer<Vertex>,
     /// Vertices after morphing and before skinning; used for meshes with morph targets.
