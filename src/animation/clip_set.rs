@@ -17,8 +17,8 @@ pub struct SetTrack {
     pub timeline: Option<u32>,
     /// Interpolation of the values between keys.
     pub interpolation: Interpolation,
-    /// Index of the track's first value in [`ClipSet::values`]. For a constant spline, which has three values, it is the index of
-    /// the middle value.
+    /// Index of the track's first value in [`ClipSet::values`]. A constant spline has three values; for such a track, this is the
+    /// index of the middle value.
     pub first_value: u32,
 }
 
@@ -124,7 +124,7 @@ impl ClipSet {
         timeline
     }
 
-    /// Times of a clip's rows in gate tables, in seconds: the key times of all its tracks.
+    /// Time of each row of a clip in gate tables, in seconds: the key times of all the clip's tracks.
     pub fn common_times(&self, clip: &ClipEntry) -> &[f32] {
         let timeline = self.timelines[clip.first_timeline as usize];
         &self.times[timeline.first_time as usize..][..timeline.keys as usize]
@@ -162,7 +162,7 @@ impl ClipSet {
         self.bones
     }
 
-    /// The clips' entries, in the order in which they were given to [`ClipSet::new`].
+    /// One entry per clip, in the order of the clips passed to [`ClipSet::new`].
     pub fn clips(&self) -> &[ClipEntry] {
         &self.clips
     }

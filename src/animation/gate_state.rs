@@ -19,7 +19,7 @@ pub struct GateState {
     /// - the last time inside the clip, as the bits of an `f32`;
     /// - the look-ahead time inside the clip, as the bits of an `f32`.
     pub history: Buffer<[u32; 4]>,
-    /// Accumulated motion of each slot of each instance when the slot was last sampled.
+    /// For each slot of each instance, the accumulated motion at the time of the slot's last sample.
     pub sampled: Buffer<u32>,
 }
 

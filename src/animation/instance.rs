@@ -42,7 +42,7 @@ pub(crate) fn check_elapsed(elapsed: f32) -> Result<(), InputError> {
     check_seconds("elapsed", elapsed)
 }
 
-/// Checks that a number of seconds is within ±[`MAX_SECONDS`]. Errors name it `field`.
+/// Checks that a number of seconds is within ±[`MAX_SECONDS`]. `field` names the value in errors.
 pub(crate) fn check_seconds(field: &str, value: f32) -> Result<(), InputError> {
     // The comparison is false for NaN, so NaN is refused.
     if value.abs() <= MAX_SECONDS {

@@ -65,8 +65,8 @@ impl AnimationLayer {
         self.weights[instance] * self.mask.as_ref().map_or(1.0, |mask| mask[bone])
     }
 
-    /// Checks that the layer matches a crowd of `count` instances that play `clips` clips on `bones` bones. `path` is the prefix
-    /// of field names in errors.
+    /// Checks that the layer matches a crowd. `count`, `clips` and `bones` are the crowd's numbers of instances, clips and bones.
+    /// `path` is the prefix of field names in errors.
     ///
     /// # Errors
     /// [`InputError`] in these cases:

@@ -147,8 +147,8 @@ impl<'a> Keys<'a> {
         path
     }
 
-    /// Largest speed between `key` and the next key, per unit of the fraction between them; `None` if there is no bound. `way` is
-    /// the distance between the values of both keys.
+    /// Largest speed between `key` and the next key: distance per unit of the fraction, which runs from 0 to 1 between the keys.
+    /// `None` if there is no bound. `way` is the distance between the values of both keys.
     fn speed(&self, key: usize, way: f64) -> Option<f64> {
         if self.is_spline() {
             let bezier = self.bezier(key);
@@ -249,9 +249,10 @@ pub fn subtree_radii(skeleton: &Skeleton, motions: &[BoneMotion], bone_radii: &[
     whole
 }
 
-/// Typical lever arms of the bones. A bone's lever arm says how far the points of its subtree move for each radian by which the
-/// bone turns: the root of the sum of their squared displacements, with the squares averaged over all directions of the axis.
-/// Each bone of the subtree contributes points at distance `bone_radii` from its origin. Positions are in the rest pose, in the model's units.
+/// Typical lever arms of the bones: how far the points of a bone's subtree move per unit of the bone's translation, rotation or
+/// scale. The displacements of the points are combined as the root of the sum of their squares. For rotation and scale, the
+/// squares are averaged over all directions of the axis. Each bone of the subtree counts as one point, at the distance
+/// `bone_radii` from that bone's origin. Positions are in the rest pose, in the model's units.
 pub fn typical_levers(skeleton: &Skeleton, bone_radii: &[f32]) -> Levers {
     let model_matrices =
         crate::animation::local_to_model::reference::local_to_model(skeleton, &skeleton.rest());

@@ -87,14 +87,14 @@ pub struct RootMotion {
 }
 
 impl RootMotion {
-    /// Takes the selected motion of `bone` out of a clip. Returns the clip in place, and the motion.
+    /// Takes the selected motion of `bone` out of a clip. Returns the clip without this motion, and the motion.
     ///
     /// # Errors
     /// [`InputError`] in these cases:
     ///
     /// - the clip is of another skeleton, or the skeleton has no such bone;
     /// - `taken` selects nothing, or the yaw without horizontal motion;
-    /// - an ancestor of the bone moves or has no extent;
+    /// - an ancestor of the bone moves, or its scale makes the bones below it flat;
     /// - the yaw is taken and an ancestor mirrors or scales unevenly.
     pub fn extract(
         skeleton: &Skeleton,

@@ -7,7 +7,7 @@ use crate::gpu::{Buffer, Gpu, GpuError};
 
 /// Bit mask of the bones whose model matrices were updated. It has one bit per slot of each instance, in
 /// [`Order::words`](super::order::Order::words) words per instance. If a bone's bit is set, the bits of all its descendants are
-/// set too.
+/// also set.
 ///
 /// Kernels set bits. The bits accumulate until all readers have processed them, so a frame may skip skinning.
 ///

@@ -36,7 +36,7 @@ pub struct ReliefMaterial {
     /// Height of the polygon within the relief, from 0 (bottom) to 1 (top).
     ///
     /// **Decided**: 1 by default, for every method. Thesis B puts the polygon at the top in its text (3.1.2) and at the bottom in
-    /// its table 4.4. Its bias of parallax (3.1.1) puts the polygon in the middle, which is ½ here.
+    /// its table 4.4. The parallax bias in its section 3.1.1 puts the polygon in the middle, which is ½ here.
     pub plane: f32,
     /// Unit vector towards the light, in world space.
     pub light: [f32; 3],

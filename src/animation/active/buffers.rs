@@ -35,7 +35,7 @@ impl ActivePairs {
         crowd.model_matrices.consumer().check_same(&self.consumer)
     }
 
-    /// Uploads a list of pairs from the host, and its dispatch arguments.
+    /// Uploads a list of pairs and the dispatch arguments for it.
     ///
     /// # Errors
     /// [`GpuError`] for errors of the device, and for more pairs than the crowd has.
@@ -55,7 +55,7 @@ pub struct Active {
     /// words per instance. A gate or the caller writes the first two masks. In order, the masks hold:
     ///
     /// - the sampled bones;
-    /// - the sampled bones that are sampled ahead, at the look-ahead time, so that they stay valid for later frames;
+    /// - the subset of these bones that is sampled at the look-ahead time, to stay valid for later frames;
     /// - the bones whose model matrices the frame updates ([`Active::updated_words`]).
     pub bits: Buffer<u32>,
     /// Bones whose model matrices were updated in this or an earlier frame, and whose vertices have not been skinned since.

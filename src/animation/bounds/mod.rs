@@ -1,9 +1,9 @@
 //! Axis-aligned bounding boxes of animated instances, in model space, for culling.
 //!
-//! A sphere around each bone's origin contains everything that the bone moves. The sphere's *radius* is in metres of the bone's
-//! own space. The bone's matrix turns the sphere into an ellipsoid. The ellipsoid's extent along an axis is the radius times the
-//! length of the matrix row of that axis. This holds for all scales of the ancestors. (The length of the longest column would be
-//! wrong, because uneven scales of a parent shear its children.)
+//! A sphere around each bone's origin contains everything that the bone moves. The sphere's *radius* is measured in the bone's
+//! own space, in metres. The bone's matrix turns the sphere into an ellipsoid. The ellipsoid's extent along an axis is the radius
+//! times the length of the matrix row of that axis. This also holds for ancestors with uneven scales. (The length of the longest
+//! matrix column would be wrong, because a parent with an uneven scale shears its children.)
 //!
 //! The result is the box around the ellipsoids of all bones. The box also contains points that several bones share with weights
 //! from 0 to 1. Such points lie between the positions that each bone alone would give them.
@@ -24,10 +24,12 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::BoundsPass;
 
-/// Largest allowed difference between a side of a box and the CPU reference, relative to the largest side; on any device.
+/// Largest allowed difference between a coordinate of a box and the CPU reference, on any device. It is relative to the box's
+/// largest absolute coordinate.
 ///
-/// Each of the two results has errors of 20ε of the extent, 4ε of the center and 2ε of the side (ε = 2⁻²⁴). Extent and center
-/// count as the largest side, so each result is off by at most 26ε of it, and both together by 52ε < 4e-6.
+/// Let ε = 2⁻²⁴. A coordinate is a bone's center plus or minus the extent of its ellipsoid. Three errors add up: 20ε of the
+/// extent, 4ε of the center, and 2ε of the coordinate. None of these values exceeds the box's largest absolute coordinate, so
+/// the device is off by at most 26ε of that coordinate. The CPU may be off by another 26ε. The total is 52ε < 4e-6.
 pub const BOUNDS_BOUND: f32 = 4e-6;
 
 /// An axis-aligned box in model space.

@@ -7,8 +7,8 @@
 //!
 //! A bone's rank is the logarithm of this product, in sixteenths of an octave. The bones of each rank are counted. All bones
 //! above a threshold rank are selected. Bones of the threshold rank itself are selected in the order of instances and slots,
-//! until the budget is used up. Instances that must be sampled in full are always sampled; their bones are charged to the budget
-//! first.
+//! until the budget is used up. Instances that must be sampled in full are always sampled; their bones count against the
+//! budget first.
 //!
 //! [`ExpectationTable`]: super::gate_table::ExpectationTable
 

@@ -29,7 +29,7 @@ impl BudgetPass {
         Ok(Self { stages, table: TableBuffers::of_expectations(gpu, table)?, bones })
     }
 
-    /// Prepares a job that selects the bones of a crowd. The crowd's clip clocks are its input.
+    /// Prepares a job that selects which bones of a crowd are sampled. The crowd's clip clocks are the input.
     ///
     /// # Errors
     /// [`crate::InputError`] if the crowd's bones, clips or rotation path differ from the table's, and if `active` belongs to

@@ -6,7 +6,7 @@ use crate::animation::gate_table::sums::{motion_at, motion_between};
 use crate::animation::lod::Lod;
 
 /// Returns the selected bones as one bit per slot, in [`AnimatedBones::words`](crate::animation::AnimatedBones::words) words per
-/// instance. `sampled` holds the accumulated motion of each slot of each instance when the slot was last sampled.
+/// instance. For each slot of each instance, `sampled` holds the accumulated motion at the time of the slot's last sample.
 ///
 /// # Panics
 /// If `lods` or `sampled` is too short for the clip clocks.

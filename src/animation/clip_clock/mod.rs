@@ -1,5 +1,5 @@
-//! Clip clocks. A clip clock is the integer position of an instance on the timeline that all bones of its clip share. Gates
-//! decide by clip clocks, so this operation runs before `animation/gate`.
+//! Clip clocks. A clip clock is the integer position of an instance on the timeline that all bones of its clip share. Gates read
+//! clip clocks, so this operation runs before `animation/gate`.
 //!
 //! The operation also finds the instances that must be sampled in full. Instances are sampled in full:
 //!

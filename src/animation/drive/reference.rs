@@ -3,7 +3,8 @@
 use super::DrivenWord;
 
 /// Adds driven bones to a gate's bits. `bits` marks the sampled bones and `ahead` the bones that are sampled ahead; both have
-/// `words` words per instance. Driven bones are never sampled ahead. Instances whose `hidden` is true do not change.
+/// `words` words per instance. Driven bones are never sampled ahead. `hidden` has one entry per instance; the bits
+/// of hidden instances do not change.
 ///
 /// # Panics
 /// If the index of a driven word is beyond `bits`, `ahead` or the instances of `hidden`.

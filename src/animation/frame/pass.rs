@@ -41,7 +41,7 @@ impl GatedFrame {
     /// # Errors
     /// [`GpuError`](crate::gpu::GpuError) for errors of the device; [`InputError`](crate::InputError) in these cases:
     ///
-    /// - the crowd is of another skeleton, or `clips` is another set than the crowd's;
+    /// - the crowd is of another skeleton, or `clips` is not the crowd's clip set;
     /// - the gate's bones, clips or rotation path ([`Crowd::path`]) differ from the crowd's;
     /// - the gate is [`Gate::Bounded`], and the model matrices were prepared for dual quaternion blending.
     pub fn new(
@@ -76,8 +76,8 @@ impl GatedFrame {
         &self.model_matrices
     }
 
-    /// Sets the gate's frame and the time in seconds for the next submission. At `elapsed` 0, the clip time of each instance is
-    /// its `start`. Every few minutes, restart `elapsed` at 0 and give the instances new starts, because `f32` seconds lose
+    /// Sets the gate's clock values and the time in seconds for the next submission. At `elapsed` 0, each instance is at the clip
+    /// time `start`. Every few minutes, restart `elapsed` at 0 and give the instances new starts, because `f32` seconds lose
     /// precision.
     ///
     /// # Errors

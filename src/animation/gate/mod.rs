@@ -49,7 +49,7 @@ pub enum Gate {
     ///
     /// Each bone may use a fraction of the remaining budget. A bone whose missed motion is within this fraction is not sampled;
     /// its missed motion is subtracted from the budget of the bones below it. A bone that missed more is sampled and subtracts
-    /// nothing. Bones thus take turns, and budget that one bone does not need is available to others.
+    /// nothing. Bones thus take turns. Budget that one bone does not need is available to others.
     ///
     /// Under linear blend skinning, no point or vertex is ever further from its exact position than
     /// [`Lod::allowed`](super::lod::Lod::allowed). The bound does not hold for dual quaternions, because dual quaternion blends
@@ -113,7 +113,7 @@ pub struct Frame {
     /// Number of frames since the start.
     pub frame: u32,
     /// How far ahead of the frame's time [`Gate::Bounded`] may sample a bone, in seconds; 0 disables sampling ahead. A bone that
-    /// is sampled ahead stays within its allowed error both before and after the sampled time, and so for twice as long. Use
-    /// about the length of a frame.
+    /// is sampled ahead stays within its allowed error both before and after the sampled time. Its sample is thus valid for twice
+    /// as long. Use about the length of a frame.
     pub ahead: f32,
 }

@@ -55,7 +55,7 @@ impl GatePass {
         Ok(Self { decider: Decider::Gate { kernel, mode, period, first_above, table } })
     }
 
-    /// Prepares a job that chooses the bones of a crowd to sample. The crowd's clip clocks are its input.
+    /// Prepares a job that chooses which bones of a crowd are sampled. The crowd's clip clocks are the input.
     ///
     /// # Errors
     /// [`GpuError`] for errors of the device; [`InputError`] in these cases:

@@ -25,8 +25,8 @@ impl ChosenBones {
     }
 }
 
-/// Chooses the bones to sample. `sampled` holds, for each slot of each instance, the accumulated motion when the slot was last
-/// sampled. Only [`Gate::Bounded`] and [`Gate::Budget`] use it.
+/// Chooses the bones to sample. For each slot of each instance, `sampled` holds the accumulated motion at the time of the slot's
+/// last sample. Only [`Gate::Bounded`] and [`Gate::Budget`] use `sampled`.
 ///
 /// # Panics
 /// If `lods` or `sampled` is too short for the clip clocks.

@@ -5,8 +5,8 @@ use crate::animation::clip_set::ClipSet;
 use crate::animation::order::Order;
 use crate::asset::clip::{Clip, Interpolation, TransformPart};
 
-/// The bones that each clip of a set moves. The gates [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and `Random` use this
-/// table alone; every other gate table contains one.
+/// The bones that each clip of a set moves. The gates [`Gate::Off`](crate::animation::Gate::Off), `Uniform` and `Random` need no
+/// other table. The tables of all other gates contain an `AnimatedBones`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnimatedBones {
     bones: usize,
@@ -17,10 +17,10 @@ pub struct AnimatedBones {
 }
 
 impl AnimatedBones {
-    /// Finds the bones whose translation, rotation or scale changes along each clip.
+    /// Finds, for each clip, the bones whose translation, rotation or scale changes during the clip.
     ///
     /// # Errors
-    /// [`InputError`] if `clips` are not the clips of `set`, and if the skeleton's number of bones differs.
+    /// [`InputError`] if `clips` are not the clips of `set`, and if `order` and `set` differ in their number of bones.
     pub fn new(order: &Order, set: &ClipSet, clips: &[&Clip]) -> Result<Self, InputError> {
         set.check_clips(clips)?;
         InputError::check_same("skeleton.len", order.slots.len(), set.bones(), "as the clips'")?;

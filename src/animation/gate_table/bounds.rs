@@ -14,15 +14,15 @@ use crate::shared::animation::gate;
 use crate::shared::animation::gate_state::FRACTION_ONE;
 use crate::shared::animation::order::NO_PARENT;
 
-/// Exponent applied to each bone's rate of motion when the error budget is divided into fractions. The exponent 1 needs the
-/// fewest samples if only the fractions decide. The exponent 0 gives all animated bones equal fractions.
+/// Exponent applied to each bone's rate of motion when the error budget is divided into fractions. If no bone could use budget
+/// that others leave, the exponent 1 would need the fewest samples. The exponent 0 treats all animated bones as equally fast.
 const EVENNESS: f64 = 0.5;
 
 /// Factor by which a bone may exceed its fraction of the budget. The error bound holds for any factor, because the bones below
 /// get only the budget that remains. A factor above 1 helps because bones seldom miss their whole fraction at the same time.
 ///
-/// The factors 1, 1.6, 2.5 and 4 were compared on a walk and a run. Where `uniform` samples every 2nd to 4th frame, the factor
-/// 1.6 needs the fewest samples. Where `uniform` samples every 8th frame, the factor 1 does.
+/// The factors 1, 1.6, 2.5 and 4 were compared on a walk and a run, at the error that the gate `uniform` causes. If `uniform`
+/// samples every 2nd to 4th frame, the factor 1.6 needs the fewest samples. If it samples every 8th frame, the factor 1 does.
 const FAVOUR: f64 = 1.6;
 
 /// Table of [`Gate::Bounded`](crate::animation::Gate::Bounded): upper bounds on the motion that each bone adds to any point, and
@@ -30,7 +30,7 @@ const FAVOUR: f64 = 1.6;
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundTable {
     motion: MotionTable,
-    /// Index of the first clip's row of parents: per slot, the nearest ancestor that the clip moves.
+    /// Index of the first clip's row of parents. A row of parents has, per slot, the nearest ancestor slot that the clip moves.
     first_above: usize,
     radius: f32,
 }
@@ -38,7 +38,7 @@ pub struct BoundTable {
 impl BoundTable {
     /// Computes the table for a set of clips. `bone_radii` gives, for each bone, the largest distance in metres from its origin
     /// to a point that follows only this bone. `path` is the rotation path that instances are sampled with. Crowds with another
-    /// path are refused, because nlerp turns faster than slerp in the middle between two keys.
+    /// path are refused, because nlerp turns faster than slerp midway between two keys.
     ///
     /// # Errors
     /// [`InputError`] in these cases:
@@ -123,8 +123,8 @@ impl BoundTable {
         self.radius
     }
 
-    /// Converts a distance in metres of model space to the unit of [`Lod::allowed`](crate::animation::Lod::allowed). Divide
-    /// metres in the world by the instance's scale first.
+    /// Converts a distance in model space, in metres, to the unit of [`Lod::allowed`](crate::animation::Lod::allowed). Divide a
+    /// distance in world space by the instance's scale first.
     pub fn units(&self, metres: f32) -> u32 {
         // The motion of a whole clip is below `EVERYTHING`, so the clamp changes no decision.
         (f64::from(metres) / self.motion.unit).clamp(0.0, f64::from(EVERYTHING - 1)).floor() as u32
@@ -135,7 +135,7 @@ impl BoundTable {
         self.motion.unit as f32
     }
 
-    /// Index of the first clip's row of parents: per slot, the nearest ancestor that the clip moves.
+    /// Index of the first clip's row of parents. A row of parents has, per slot, the nearest ancestor slot that the clip moves.
     #[cfg(feature = "gpu")]
     pub(crate) fn first_above(&self) -> u32 {
         self.first_above as u32
@@ -159,7 +159,7 @@ impl BoundTable {
     }
 }
 
-/// A bone's fraction of the allowed error and its rounding slack, packed for the kernel.
+/// A bone's fraction of the error budget and the bone's quantization slack, packed into one word for the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoneErrorBudget(pub u32);
 

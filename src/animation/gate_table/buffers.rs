@@ -23,7 +23,7 @@ pub(crate) struct TableBuffers {
 
 impl TableBuffers {
     pub fn of_animated_bones(gpu: &Gpu, table: &AnimatedBones) -> Result<Self, GpuError> {
-        // Placeholder row: kernels that decide by animated bones alone read no entry.
+        // Placeholder row: gates that use only the animated bones read no entry.
         Self::new(gpu, table, &[[0; 2]], 0, None)
     }
 

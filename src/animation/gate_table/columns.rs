@@ -29,9 +29,10 @@ impl Column {
     /// Writes the column into a table with `stride` entries per row, in multiples of `unit`.
     ///
     /// Rounding: sums at row starts are rounded to nearest, rises are rounded up, and interpolated sums are rounded down. The
-    /// difference of two sums is thus at most 4 units too small. Fractions are truncated to 16 bits (2⁻¹⁶ of a segment), and
-    /// their division may add a rounding error. For two sums, both errors together are below 2⁻¹² of the steepest segment. The
-    /// quantization slack is a power of two that covers all of these errors.
+    /// difference of two sums is thus at most 4 units too small. Two more errors come from the fraction of a segment. It is
+    /// truncated to 16 bits, which loses up to 2⁻¹⁶ of the segment, and the division that computes it may round. For two sums,
+    /// these two errors total less than 2⁻¹² of the steepest segment. The quantization slack is a power of two that covers them
+    /// and the 4 units.
     pub(super) fn write(&self, table: &mut [[u32; 2]], stride: usize, unit: f64) {
         let mut sum = 0.0;
         let mut steepest = 0.0_f64;

@@ -11,7 +11,8 @@ use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
 /// Table of [`Gate::Budget`](crate::animation::Gate::Budget): the motion that each bone is expected to add to points that follow
-/// the bone or its descendants. This motion is a root sum of squares. The gate ranks bones by it.
+/// the bone or its descendants. The displacements of these points are combined as the root of the sum of their squares. The gate
+/// ranks bones by this motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectationTable(MotionTable);
 

@@ -10,8 +10,8 @@ use crate::asset::clip::Clip;
 use crate::asset::keyframe::RotationPath;
 use crate::asset::skeleton::Skeleton;
 
-/// Accumulated motion per row and slot. Each entry is the sum at the row's time and its increase until the next row, in units of
-/// the table. A clip's last row holds the motion of the whole clip and a [`BoneErrorBudget`](super::BoneErrorBudget).
+/// Motion per row and slot. Each entry is the accumulated motion at the row's time and its increase until the next row, in units
+/// of the table. A clip's last row holds the motion of the whole clip and a [`BoneErrorBudget`](super::BoneErrorBudget).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MotionTable {
     pub animated_bones: AnimatedBones,

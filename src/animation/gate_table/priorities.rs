@@ -16,7 +16,7 @@ pub struct PriorityTable {
 }
 
 impl PriorityTable {
-    /// Computes the table. `priorities` has one entry per clip. Before its first key, a bone has the priority of that key.
+    /// Computes the table. `priorities` has one entry per clip. Before its first key, a bone has the first key's priority.
     ///
     /// # Errors
     /// [`InputError`] for the errors of [`AnimatedBones::new`], if `priorities` does not have one entry per clip, and for a table
@@ -61,7 +61,7 @@ impl PriorityTable {
         self.stride
     }
 
-    /// Priority of a slot in a row, 0 to 65535 for 0 to 1.
+    /// Priority of a slot in a row. The integers 0 to 65535 stand for the priorities 0 to 1.
     pub(crate) fn priority(&self, row: u32, slot: usize) -> u32 {
         self.rows[row as usize * self.stride + slot / 4][slot / 2 % 2] >> (16 * (slot % 2)) & 0xffff
     }

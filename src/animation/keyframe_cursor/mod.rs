@@ -14,6 +14,6 @@ pub use pass::{KeyframeCursorJob, KeyframeCursorPass};
 /// Largest allowed difference between a cursor's `key + fraction` and the CPU reference, on any device. It holds for times up to
 /// 64 s and keys at least 1/64 s apart.
 ///
-/// Devices may fuse the operations of `start + rate·elapsed` and of the wrapped time `t − ⌊t/d⌋·d`. Together, both are off by at
-/// most 3ε of 64 s, with ε = 2⁻²⁴. This is 7.4e-4 of a segment of 1/64 s. The division for the fraction adds 2.5ε.
+/// Devices may fuse the operations of `start + rate·elapsed` and of the wrapped time `t − ⌊t/d⌋·d`. The errors of both terms add
+/// up to at most 3ε · 64 s, with ε = 2⁻²⁴. This is 7.4e-4 of a segment of 1/64 s. The division for the fraction adds 2.5ε.
 pub const KEYFRAME_CURSOR_BOUND: f32 = 1e-3;

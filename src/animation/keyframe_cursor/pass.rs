@@ -111,7 +111,7 @@ fn bind(
 pub type KeyframeCursorJob = ParamsJob<KeyframeCursorParams>;
 
 impl KeyframeCursorJob {
-    /// Sets the time in seconds for the next submission. At `elapsed` 0, the clip time of each instance is its `start`. Every few
+    /// Sets the time in seconds for the next submission. At `elapsed` 0, each instance is at the clip time `start`. Every few
     /// minutes, restart `elapsed` at 0 and give the instances new starts, because `f32` seconds lose precision.
     ///
     /// # Errors

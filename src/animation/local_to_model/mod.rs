@@ -16,10 +16,10 @@ pub mod reference;
 #[cfg(feature = "gpu")]
 pub use pass::LocalToModelPass;
 
-/// Largest allowed difference between a matrix component and the CPU reference, on any device. It is relative to the number of
-/// bones of the longest chain times the largest component (at least 1).
+/// Largest allowed difference between a matrix component and the CPU reference, on any device. Two factors scale this bound: the
+/// number of bones on the longest path from a root to a leaf, and the largest absolute component (at least 1).
 ///
-/// Let ε = 2⁻²⁴: an operation has an error of 2ε. A local matrix has an error of 10ε of its scale. A row of the product has an
-/// error of 8ε of the sum of its terms. This sum is at most √3 times the largest component. Together, these errors are at most
-/// 32ε per bone, or 1.91e-6. The bound is rounded up.
+/// Let ε = 2⁻²⁴: an operation has an error of 2ε. A local matrix has an error of 10ε, relative to its scale. A row of the product
+/// has an error of 8ε, relative to the sum of its terms. This sum is at most √3 times the largest component. Together, these
+/// errors are at most 32ε per bone, or 1.91e-6. The bound is rounded up.
 pub const LOCAL_TO_MODEL_BOUND: f32 = 2e-6;

@@ -43,7 +43,7 @@ pub fn affine(transform: &Transform) -> Affine {
     ]
 }
 
-/// Product `a · b` of two affine matrices. Applied to a point, it applies `b` first.
+/// Product `a · b` of two affine matrices. The product transforms a point by `b` first, then by `a`.
 pub fn product(a: &Affine, b: &Affine) -> Affine {
     // Loops over whole rows let compilers vectorize. Closures took twice as long.
     let mut product = [[0.0; 4]; 3];
@@ -57,7 +57,7 @@ pub fn product(a: &Affine, b: &Affine) -> Affine {
 }
 
 /// Computes the model matrices of the updated slots of one instance. `updated_bones` holds one bit per slot. If a slot's bit is
-/// set, the bits of its descendants must be set too.
+/// set, the bits of its descendants must also be set.
 ///
 /// # Panics
 /// If a slice has fewer bits, local transforms or matrices than there are bones.

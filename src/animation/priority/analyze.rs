@@ -22,8 +22,8 @@ impl Weights {
     /// The user term keeps its default weight; the fit divides the remaining weight. If nothing moves in the clip, or if no term
     /// has an effect, the result is the default weights.
     ///
-    /// The error is the root mean square of displacements over four moments and all bones. The displaced points lie on the bone's
-    /// axes, at a distance from its origin that equals the bone's length.
+    /// The error is the root mean square of displacements over four moments and all bones. The displaced points lie on each
+    /// bone's axes. Their distance from the bone's origin is the bone's length.
     ///
     /// # Errors
     /// [`InputError`] if the clip's number of bones differs from the skeleton's.
@@ -243,7 +243,8 @@ mod tests {
         assert!((errors[0] - expected).abs() < 1e-6 && errors[1] == 0.0, "{errors:?} {expected}");
     }
 
-    /// If only the translation changes, and in proportion to the error, only the weight of the translation remains.
+    /// Only the translation changes, and the error is proportional to this change. The translation term then gets all weight that
+    /// the user term leaves.
     #[test]
     fn the_part_that_moves_gets_the_weight() {
         let distances = [0.0, 1.0, 1.5, 4.0, 0.0].map(|x| [x, 0.0, 0.0, 0.0]);

@@ -17,13 +17,14 @@ pub use pass::SamplePass;
 pub const SLERP_BOUND: f32 = 1e-6;
 
 /// Largest allowed difference between a component and the CPU reference at the same cursor, on any device. It is relative to the
-/// largest value (at least 1).
+/// largest absolute component of the reference (at least 1).
 ///
 /// Let ε = 2⁻²⁴: `+`, `−` and `×` round by up to 2ε, and `inverseSqrt` by up to 4ε.
 ///
 /// - A spline adds four products with weights of at most 1.15. Each product has an error of 8ε, and the sum has 40ε.
-/// - In a slerp, the cosine and its inverse have an error of 8ε each, and the cosine of half the angle 14ε. Each of the five
-///   terms adds 6ε, times a factor of at most 0.3. This gives 16ε per weight, and 50ε for two or three weights.
+/// - In a slerp, the cosine and the inverse square root computed from it have an error of 8ε each. The cosine of half the angle
+///   has 14ε. Each of the five polynomial terms adds 6ε, times a factor of at most 0.3. A weight thus has an error of 16ε. Two or
+///   three weights together have 50ε.
 /// - Normalizing adds 16ε.
 ///
 /// The total is below 160ε < 1e-5.
@@ -32,7 +33,7 @@ pub const SAMPLE_BOUND: f32 = 1e-5;
 /// Factor by which [`SAMPLE_BOUND`] grows with each layer above the base.
 ///
 /// A blend of two vectors with error e has the error e plus 12ε of rounding: 2ε for weight times mask, 4ε for 1 minus this
-/// product, and 6ε for both products and their sum. The blend of two unit quaternions less than 90° apart has a length of at
-/// least √½. Normalizing therefore multiplies its error by at most √2 and adds 16ε. The result is √2·e + 33ε. Here 33ε = 2e-6 is
-/// a fifth of the smallest e, which is [`SAMPLE_BOUND`].
+/// product, and 6ε for multiplying and adding the vectors. The blend of two unit quaternions less than 90° apart has a length of
+/// at least √½. Normalizing therefore multiplies the blend's error by at most √2 and adds 16ε. The result is √2·e + 33ε. Here
+/// 33ε = 2e-6 is a fifth of the smallest e, which is [`SAMPLE_BOUND`].
 pub const LAYER_GROWTH: f32 = 1.65;

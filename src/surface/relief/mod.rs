@@ -20,7 +20,7 @@ pub use crate::shared::surface::ray::{SurfaceHit as ReliefHit, SurfaceRay as Rel
 use crate::shared::surface::{linear, ray, trace};
 use crate::surface::map::Address;
 
-/// Smallest cosine of the angle between a traced ray and the normal, for an angle of 89.55°. Flatter rays are traced with this
+/// Smallest cosine of the angle between a traced ray and the normal: the cosine of 89.55°. Flatter rays are traced with this
 /// cosine.
 pub const LEAST_COSINE: f32 = ray::SURFACE_LEAST_COSINE;
 

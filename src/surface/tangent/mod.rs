@@ -11,7 +11,7 @@
 //! vertex, 2·sin(θ/2). This weight is close to the angle weight of Thürmer and Wüthrich (1998), which does not depend on how a
 //! surface is triangulated. The chord needs no arc cosine.
 //!
-//! Vertices without a defined tangent get a frame too, never NaN:
+//! Vertices without a defined tangent also get a frame, never NaN:
 //!
 //! - A triangle contributes nothing if f32 cannot resolve its tangent. This is the case if its extent in u, v or space is below
 //!   2⁻¹⁰⁰. It is also the case if its area, tangent or uv area is below the fraction [`DEGENERATE`] of the largest value that
@@ -21,9 +21,9 @@
 //! - A normal that is zero or not finite (largest component outside 2⁻¹⁰⁰ to 2¹⁰⁰) counts as +Z. The tangent is then (1, 0, 0),
 //!   and `w` is 1. Other normals need not have unit length.
 //!
-//! `w` is −1 where uv are mirrored. If mirrored and unmirrored triangles share a vertex, `w` is the sign of the larger weight, or
-//! +1 if both are equal. If their tangents are opposite, the sum vanishes. Meshes should therefore be split at such vertices, for
-//! example by [`split_mirrored`].
+//! `w` is −1 where uv are mirrored. If mirrored and unmirrored triangles share a vertex, the group with the larger total weight
+//! decides `w`. If the weights are equal, `w` is +1. If the tangents of both groups are opposite, their sum vanishes. Meshes
+//! should therefore be split at such vertices, for example by [`split_mirrored`].
 
 use crate::InputError;
 use crate::asset::indices::check_triangles;

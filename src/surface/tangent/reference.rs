@@ -1,4 +1,4 @@
 //! Tangent frames of meshes: the CPU reference of `kernels/surface/tangent.wgsl`. The code is in `asset`, because the model
-//! import uses it too.
+//! import also uses it.
 
 pub use crate::asset::tangents::{TangentFrame, frames, tangents};

@@ -221,7 +221,7 @@ fn find<'a>(set: &'a ClipSet, track: SetTrack, cursors: &[KeyframeCursor]) -> Fo
     let first = track.first_value as usize;
     let start = KeyframeCursor::default();
     match (track.timeline, track.interpolation) {
-        // `first` is the middle of three values; sampling starts at the first of them.
+        // `first` is the index of the middle of three values. Sampling starts at the value before it.
         (None, Interpolation::CubicSpline) => (&set.values()[first - 1..], Interpolation::CubicSpline, start),
         (None, _) => (&set.values()[first..], Interpolation::Step, start),
         (Some(timeline), between) => (&set.values()[first..], between, cursors[timeline as usize]),
