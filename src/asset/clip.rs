@@ -11,8 +11,8 @@
 //!   three values per key: in-tangent, value, out-tangent. A tangent is stored multiplied by the duration of its segment in
 //!   seconds. The segment of an in-tangent ends at the key; the segment of an out-tangent starts at the key.
 //!
-//! A key thus takes 16 bytes (48 in a cubic spline). Its time takes 4 more bytes, unless another track shares the time. A bone
-//! without keys has three tracks with 0 keys and one value each: the bone's rest pose.
+//! The value of a key thus takes 16 bytes (48 in a cubic spline). The key's time takes 4 more bytes, unless another track
+//! shares the time. A bone without keys has three tracks with 0 keys and one value each: the bone's rest pose.
 //!
 //! # Decisions where glTF leaves room
 //!
@@ -20,7 +20,7 @@
 //!   are refused.
 //! - Quaternions are stored with length 1. A quaternion shorter than [`SHORTEST`](super::transform::SHORTEST) is refused.
 //! - A key of a linear rotation is stored with the sign that brings it closer to the previous key. Sampling then takes the
-//!   shortest path between neighbouring keys and need not test signs. Cubic splines keep all signs, because the signs of a
+//!   shortest path between neighbouring keys, without tests of signs. Cubic splines keep all signs, because the signs of a
 //!   value and its tangents must match.
 //! - Times below 2⁻¹⁰⁰ s count as 0, because devices may flush the tiny differences between such times to zero.
 

@@ -4,8 +4,8 @@
 //! - `truncate(k)` keeps the k strongest influences and divides their weights by the sum of the kept weights. Vertices jump
 //!   when k changes.
 //! - `fade(λ)` subtracts λ times the second strongest weight from every weight except the strongest. The strongest weight grows
-//!   so that the sum stays 1. The result is continuous in λ: λ = 0 is full quality, bit for bit; λ = 1 is rigid. The weakest
-//!   influences vanish first, and shaders do not fetch vanished influences.
+//!   so that the sum stays 1. The result is continuous in λ: λ = 0 keeps all weights, bit for bit; λ = 1 leaves only the
+//!   strongest influence. The weakest influences vanish first, and shaders do not fetch vanished influences.
 
 use serde::{Deserialize, Serialize};
 
@@ -133,7 +133,7 @@ impl Influences {
     }
 
     /// Appends the influences of another mesh's vertices, with the same order and weights. `bone` converts the other mesh's
-    /// bone indices to this mesh's.
+    /// bone indices to bone indices of this mesh.
     pub(crate) fn append(&mut self, other: &Self, mut bone: impl FnMut(u32) -> u32) {
         let first = self.all.len() as u32;
         self.offsets.extend(other.offsets[1..].iter().map(|offset| first + offset));

@@ -40,8 +40,8 @@ impl Light {
     }
 }
 
-/// Fraction of its albedo that a Lambertian surface reflects to the eye. `direct`, 0 to 1, is the cosine of the light's angle
-/// of incidence, reduced in shadow. `ambient`, 0 to 1, is the result for a `direct` of 0.
+/// Light that a Lambertian surface reflects to the eye, as a fraction of the surface's albedo. `direct`, 0 to 1, is the cosine
+/// of the light's angle of incidence, reduced in shadow. `ambient`, 0 to 1, is the result for a `direct` of 0.
 pub fn lambert(ambient: f32, direct: f32) -> f32 {
     ambient + (1.0 - ambient) * direct
 }

@@ -93,8 +93,9 @@ pub enum Alpha {
     Opaque,
     /// Pixels with an alpha below this threshold are not drawn; all others are opaque.
     Mask(f32),
-    /// Screen-door transparency: alpha is the fraction of the pixels in each 4 × 4 block that are drawn. Triangles need no
-    /// sorting, and depth is written. Where two such surfaces overlap, the farther surface shows only if its alpha is larger.
+    /// Screen-door transparency: in each block of 4 × 4 pixels, alpha is the fraction of pixels that are drawn. Triangles need
+    /// no sorting, and depth is written. Where two such surfaces overlap, the farther surface shows only if its alpha is
+    /// larger.
     Dithered,
     /// Blending with the surfaces behind. In scenes, only the layer `render::Layer::Transparent` draws such surfaces, from back
     /// to front, instance by instance. Without that layer, the surface is drawn as [`Alpha::Dithered`].

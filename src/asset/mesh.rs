@@ -18,7 +18,8 @@ pub const MAX_VERTICES: usize = 1 << 24;
 /// Largest allowed absolute value of a component of positions and texture coordinates.
 pub const COORDINATE_LIMIT: f32 = tangents::COORDINATE_LIMIT;
 
-/// Largest number of levels of detail of a mesh, including level 0, the mesh itself; [`Mesh::levels`] holds the others.
+/// Largest number of levels of detail of a mesh, including level 0. Level 0 is the mesh itself; [`Mesh::levels`] holds the
+/// other levels.
 pub const MAX_LEVELS: usize = crate::shared::skinning::instance_lod::MAX_LEVELS as usize;
 
 /// A coarser level of detail of a mesh. It uses a subset of the mesh's vertices.
@@ -26,10 +27,10 @@ pub const MAX_LEVELS: usize = crate::shared::skinning::instance_lod::MAX_LEVELS 
 pub struct MeshLevel {
     /// Three vertex indices per triangle, into the mesh's vertices; at least one triangle.
     pub indices: Vec<u32>,
-    /// Geometric error in the model's units, at least 0: the largest distance between the surfaces of level and mesh over the
-    /// examined poses. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures it at samples: no vertex of the mesh is
-    /// further than `error` from the level, and no sample of the level is further than `error` from the mesh. Points between
-    /// samples may be further.
+    /// Geometric error in the model's units, at least 0: the largest distance between the level's surface and the mesh's
+    /// surface in any examined pose. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures this distance at sample
+    /// points. No vertex of the mesh is further than `error` from the level, and no sample point of the level is further than
+    /// `error` from the mesh. Other points may be further.
     pub error: f32,
 }
 
@@ -49,8 +50,9 @@ pub struct Mesh {
     pub tangents: Vec<[f32; 4]>,
     /// Texture coordinates per vertex, for all textures of the material; v points down the image.
     pub uv: Vec<[f32; 2]>,
-    /// Three vertex indices per triangle, counter-clockwise seen from outside after skinning in the rest pose. If bones mirror
-    /// a triangle at rest, it is clockwise in bind space; the import reverses such triangles of the file.
+    /// Three vertex indices per triangle. After skinning in the rest pose, a triangle is counter-clockwise seen from outside. A
+    /// triangle that bones mirror in the rest pose is therefore clockwise in bind space. The import reverses such triangles of
+    /// the file.
     pub indices: Vec<u32>,
     /// Whether triangles are also visible from the inside.
     pub double_sided: bool,
@@ -68,8 +70,9 @@ pub struct Mesh {
     /// level uses a subset of the previous level's vertices, and errors do not decrease from one level to the next.
     pub levels: Vec<MeshLevel>,
     /// Partner of each vertex: the vertex that replaces it in the first level whose triangles no longer use it. The partner is
-    /// a vertex of that level, or a vertex at the same position that no triangle of that level uses. A vertex of the coarsest
-    /// level, and a vertex without triangles, is its own partner.
+    /// normally a vertex of that level. If the level uses no vertex at the position to which a vertex collapses, the partner is
+    /// another vertex that collapses to this position. A vertex of the coarsest level, and a vertex without triangles, is its
+    /// own partner.
     ///
     /// Replacing the corners of a level's triangles by their partners gives the triangles of the next coarser level. The
     /// triangles keep their order, and some become degenerate. The list is empty if partners are not known.
@@ -184,7 +187,7 @@ pub fn bone_radii(bones: usize, skins: &[Skin], meshes: &[Mesh]) -> Vec<f32> {
     bone_radii.into_iter().map(|bone_radius| (bone_radius * (1.0 + 1e-6)) as f32).collect()
 }
 
-/// For each vertex, the displacement by each morph target that moves it, at that target's largest weight.
+/// For each vertex, one displacement for each morph target that moves the vertex, at the target's largest weight.
 fn deltas_by_vertex(mesh: &Mesh) -> Vec<Vec<glam::DVec3>> {
     let mut deltas = vec![Vec::new(); mesh.vertices()];
     for (index, target) in mesh.targets.iter().enumerate() {

@@ -29,7 +29,7 @@ pub struct Model {
     /// The meshes of the model.
     pub meshes: Vec<Mesh>,
     /// Number of meshes with a skin from the file; these come first in `meshes`. Each of the other meshes follows one bone as a
-    /// whole: its node or an ancestor of its node.
+    /// whole: the bone of the mesh's node or of an ancestor of this node.
     pub skinned: usize,
     /// Materials; meshes refer to them by index.
     pub materials: Vec<Material>,

@@ -70,7 +70,7 @@ impl TryFrom<StoredKeys> for WeightKeys {
 
     fn try_from(stored: StoredKeys) -> Result<Self, InputError> {
         let StoredKeys { times, values, interpolation, targets } = stored;
-        // A larger number of targets could overflow the product that `new` computes.
+        // With more targets than values, the product that `new` computes could overflow.
         if targets > values.len() {
             let bound = format!("must be at most {}, the number of values", values.len());
             return Err(InputError::new("weight_keys.targets", targets, bound));
@@ -80,9 +80,9 @@ impl TryFrom<StoredKeys> for WeightKeys {
 }
 
 impl WeightKeys {
-    /// Builds the keys of `targets` weights. Each key has one value per target. In a cubic spline, a key has first all
-    /// in-tangents, then all values, then all out-tangents; tangents are per second. `at_times` and `at_values` are the paths
-    /// of `times` and `values` in errors.
+    /// Builds the keys of `targets` weights. Each key has one value per target. In a cubic spline, a key has first the
+    /// in-tangents of all targets, then all values, then all out-tangents. A tangent is a change of weight per second.
+    /// `at_times` and `at_values` are the paths of `times` and `values` in errors.
     ///
     /// # Errors
     /// [`InputError`] for no keys or no targets; for times that descend, are negative, too large or not finite; for a wrong
@@ -150,8 +150,8 @@ impl WeightKeys {
         if self.interpolation != Interpolation::CubicSpline {
             return values;
         }
-        // The factors of the two tangents, t³ − 2t² + t and t³ − t², reach 4/27 in absolute value. The sum of their absolute
-        // values never exceeds 1/4.
+        // The two tangents have the factors t³ − 2t² + t and t³ − t². The absolute values of these factors add up to t − t²,
+        // which is at most 1/4.
         let tangent = |key: usize, part: usize| self.values[(3 * key + part) * self.targets + target].abs();
         let bends = (1..self.times.len())
             .map(|key| (self.times[key] - self.times[key - 1]) * tangent(key - 1, 2).max(tangent(key, 0)));

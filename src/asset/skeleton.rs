@@ -27,8 +27,8 @@ impl Bone {
     }
 }
 
-/// Bones in an order in which every parent comes before its children. A node that no skin uses is also a bone if joints lie
-/// below it.
+/// Bones, ordered so that every parent comes before its children. An ancestor of a joint is also a bone, even if no skin uses
+/// it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "StoredSkeleton", into = "StoredSkeleton")]
 pub struct Skeleton {
@@ -38,7 +38,7 @@ pub struct Skeleton {
     descendants: Vec<u32>,
 }
 
-/// Largest deviation of a stored rotation's length from 1.
+/// Largest allowed difference between the length of a stored rotation and 1.
 const OFF_UNIT: f32 = 1e-5;
 
 /// Stored form of a skeleton: bones and joints, from which everything else is computed.
@@ -75,8 +75,8 @@ impl TryFrom<StoredSkeleton> for Skeleton {
 }
 
 impl Skeleton {
-    /// Builds a skeleton of `bones`. `joints` are the indices of the bones that skins use, in the order in which tools list
-    /// them.
+    /// Builds a skeleton of `bones`. `joints` are the indices of the bones that skins use; [`Skeleton::joints`] keeps their
+    /// order.
     ///
     /// # Errors
     /// [`InputError`] for no or too many bones, and for a parent that does not come before its child. Also for a rest pose that
@@ -150,7 +150,7 @@ impl Skeleton {
     }
 
     /// For each bone, an upper bound on the scale from the parent's space to model space at rest: the product of the largest
-    /// scales of its ancestors. Scales of 0 count as 1.
+    /// scale of each ancestor. An ancestor whose scales are all 0 counts as 1.
     pub(crate) fn scales_above(&self) -> Vec<f64> {
         let mut above = Vec::with_capacity(self.bones.len());
         for bone in &self.bones {

@@ -11,8 +11,9 @@ pub use crate::shared::surface::tangent::{DEGENERATE, VANISHING};
 /// Largest allowed absolute value of a component of positions and texture coordinates.
 pub const COORDINATE_LIMIT: f32 = 1e18;
 
-/// Largest allowed difference between a component of a tangent and the reference, on any device. It applies to a vertex of
-/// sensitivity 1 ([`TangentFrame::sensitivity`]); a larger sensitivity multiplies it.
+/// Largest allowed difference, on any device, between a component of a tangent and the same component of the reference. The
+/// bound applies to a vertex of sensitivity 1 ([`TangentFrame::sensitivity`]). For other vertices, the bound is multiplied by
+/// the sensitivity.
 ///
 /// `docs/rounding-bounds.md` has the derivation.
 pub const TANGENT_BOUND: f32 = 1e-5;
@@ -68,8 +69,8 @@ pub(super) fn numbers_in_range(path: impl Fn() -> String, numbers: &[f32]) -> Re
     }
 }
 
-/// For each vertex, the triangle corners that meet there. The reference and the kernel add in this order, so that all runs
-/// agree.
+/// For each vertex, the triangle corners that meet there. The reference and the kernel add the contributions of the corners in
+/// this order, so that all runs agree.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adjacency {
     /// Start of each vertex's range in `corners`; one more entry holds the total.
@@ -239,7 +240,7 @@ fn frame(mesh: &TangentMesh<'_>, adjacency: &Adjacency, vertex: usize) -> Tangen
     }
     let flat = sum.tangent - normal * normal.dot(sum.tangent);
     let least = sum.weight * f64::from(VANISHING);
-    // n additions cause n roundings. Every 32 roundings add the sum of sensitivities once more.
+    // Adding n contributions causes n roundings. For every 32 roundings, the sum of the sensitivities is added once more.
     let sensitivity = sum.sensitivity * (1.0 + corners.len() as f64 / 32.0);
     let error = f64::from(TANGENT_BOUND) * sensitivity;
     let vanishing = if sum.weight > 0.0 { undecided(flat.length(), least, error.x) } else { 0.0 };

@@ -57,7 +57,7 @@ pub(crate) fn finite(path: &str, values: &[f32]) -> Result<(), InputError> {
     InputError::check_each(path, values, |value| value.is_finite(), "must be finite")
 }
 
-/// Returns the quaternion scaled to length 1. Refuses a quaternion without a direction; `path` names it.
+/// Returns the quaternion scaled to length 1. Refuses a quaternion without a direction. `path` names the quaternion in errors.
 pub(crate) fn unit(path: &str, quaternion: [f32; 4]) -> Result<[f32; 4], InputError> {
     finite(path, &quaternion)?;
     let wide = quaternion.map(f64::from);

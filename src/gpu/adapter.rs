@@ -9,8 +9,8 @@ pub(crate) const ADAPTER_VARIABLE: &str = "RELIEVO_ADAPTER";
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Options {
     /// A kind (`discrete`, `integrated`, `virtual`, `cpu`), or a part of the adapter's name or driver (`llvmpipe`,
-    /// `swiftshader`, `H200`). Upper and lower case are equal. If it is `None`, the environment variable `RELIEVO_ADAPTER`
-    /// decides, or else the fastest available kind is used.
+    /// `swiftshader`, `H200`). Upper and lower case are equal. If this field is `None`, the environment variable
+    /// `RELIEVO_ADAPTER` selects the adapter. If the variable is not set either, the fastest available kind is used.
     pub adapter: Option<String>,
 }
 

@@ -31,7 +31,8 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// up to a multiple of 16 bytes, so kernels may read and write four words at a time.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] if the buffer exceeds the largest storage binding; [`GpuError::OutOfMemory`].
+    /// [`GpuError::Limit`] if the buffer exceeds the largest storage binding; [`GpuError::OutOfMemory`] if there is not enough
+    /// memory.
     pub fn new(gpu: &Gpu, label: &'static str, len: usize) -> Result<Self, GpuError> {
         let size = (len.max(1) * size_of::<T>()).next_multiple_of(ROOM) as u64;
         if size > gpu.max_binding() {
@@ -87,7 +88,8 @@ impl<T: bytemuck::Pod> Buffer<T> {
         self.write_at(gpu, 0, data)
     }
 
-    /// Checks that `count` elements from `first` on lie in the buffer. The allocation may be larger than the buffer's `len`.
+    /// Checks that `count` elements from `first` on lie in the buffer. wgpu's own check is not enough, because the allocation
+    /// may be larger than `len` elements.
     ///
     /// # Errors
     /// [`GpuError::Validation`] if the elements reach beyond the buffer's end.

@@ -1,8 +1,8 @@
 //! Tells whether two handles belong to the same device, and whether a device is lost.
 //!
 //! wgpu compares handles by identifiers that each [`wgpu::Instance`] counts separately, so devices of two instances may compare
-//! equal. wgpu panics if a resource of one instance is used in another. It has no query for a device's instance, and none for a
-//! device's loss.
+//! equal. wgpu panics if a resource of one instance is used in another. wgpu has no query for a device's instance, and none for
+//! a device's loss.
 //!
 //! Natively, a call that a working device refuses answers both questions. The error scope that catches the error belongs to the
 //! called device. If no scope catches an error, the device is lost.
@@ -74,7 +74,7 @@ mod native {
         /// buffer.
         ///
         /// wgpu panics for an identifier that is unknown to the encoder's instance. The panic is caught here, before anything
-        /// else is recorded. The program's panic hook runs.
+        /// else is recorded. The program's panic hook still runs.
         pub fn is_taken<'a>(&'a self, record: impl FnOnce(&'a wgpu::Buffer)) -> bool {
             let probe = self.0.probe.get_or_init(|| probe(&self.0.device));
             caught(|| record(probe)).is_some()
@@ -95,8 +95,9 @@ mod native {
     /// Number of probe buffers after which identifiers repeat.
     const PROBES_APART: u32 = 64;
 
-    /// Creates a buffer whose identifier exists in no other instance. An identifier contains how often its slot in wgpu was
-    /// used. The slot of the probe is used more often than other slots, and a different number of times for each probe.
+    /// Creates a buffer whose identifier exists in no other instance. An identifier contains the number of times that its slot
+    /// in wgpu was used. This function uses the slot of the probe more often than other slots are used, and a different number
+    /// of times for each probe.
     fn probe(device: &wgpu::Device) -> wgpu::Buffer {
         let number = 1 + PROBES.fetch_add(1, Ordering::Relaxed) % PROBES_APART;
         let descriptor = wgpu::BufferDescriptor {

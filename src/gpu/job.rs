@@ -65,8 +65,8 @@ impl Step {
     }
 }
 
-/// Number of threads after which [`Job::run_async`] submits. They take some tenths of a second on a slow GPU. Operating systems
-/// abort work that takes seconds.
+/// Number of threads after which [`Job::run_async`] submits. This number of threads takes some tenths of a second on a slow
+/// GPU. Operating systems abort work that takes seconds.
 const INVOCATIONS_A_SUBMISSION: u64 = 1 << 27;
 
 /// A prepared sequence of dispatches. It is built once, and recorded any number of times without allocation.

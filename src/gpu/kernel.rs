@@ -65,7 +65,7 @@ impl Kernel {
         self.layouts.bind_group(gpu, shader, group, resources)
     }
 
-    /// Workgroup counts for `invocations` threads along x. If one dimension cannot hold them, they are spread over x and y.
+    /// Workgroup counts for `invocations` threads along x. If x alone cannot hold all workgroups, they are spread over x and y.
     pub fn spread(&self, gpu: &Gpu, invocations: u32) -> [u32; 3] {
         rows_of_workgroups(gpu, self.groups_for(invocations).max(1))
     }
@@ -128,8 +128,8 @@ impl Layouts {
     }
 }
 
-/// Workgroup counts along x, y and z for a total of at least `groups`, in rows as long as the device permits. For 0 groups, the
-/// count along y is 0.
+/// Workgroup counts along x, y and z for a total of at least `groups` workgroups, in rows as long as the device permits. For 0
+/// groups, the count along y is 0.
 pub(crate) fn rows_of_workgroups(gpu: &Gpu, groups: u32) -> [u32; 3] {
     let x = groups.clamp(1, gpu.device().limits().max_compute_workgroups_per_dimension);
     [x, groups.div_ceil(x), 1]

@@ -28,7 +28,7 @@ impl Memory {
         self.now.load(Ordering::SeqCst)
     }
 
-    /// Returns the peak number of bytes since the last call.
+    /// Returns the peak number of allocated bytes since the last call of this function.
     pub fn take_most(&self) -> u64 {
         self.most.swap(self.now(), Ordering::SeqCst)
     }

@@ -123,11 +123,11 @@ impl Gpu {
         self.identity == other.identity
     }
 
-    /// Whether an encoder or a pass can record this device's resources. The closure `record` gets a buffer of 4 bytes, which it
-    /// records as an index buffer or clears.
+    /// Whether an encoder or a pass can record this device's resources. The closure `record` receives a buffer of 4 bytes, and
+    /// records a use of this buffer: it binds the buffer as an index buffer, or clears it.
     ///
-    /// The result is `false` for encoders and passes of another [`wgpu::Instance`]. wgpu itself refuses another device of the
-    /// same instance.
+    /// The result is `false` for encoders and passes of another [`wgpu::Instance`]. wgpu itself refuses encoders and passes of
+    /// another device of the same instance.
     pub(crate) fn is_taken<'a>(&'a self, record: impl FnOnce(&'a wgpu::Buffer)) -> bool {
         self.identity.is_taken(record)
     }

@@ -188,7 +188,7 @@ mod tests {
         while pending.len() > 0 {
             turns.push(pending.send(&gpu, 600).expect("sent"));
         }
-        // A send has two rows of 256 bytes; the remaining 88 bytes allow one more row.
+        // A send of 600 bytes begins with two rows of 256 bytes. The remaining 88 bytes are rounded up to one more row.
         assert_eq!(turns.iter().sum::<usize>(), texels.len() + small.len());
         assert!(turns.iter().all(|bytes| (512..=768).contains(bytes) || *bytes == turns[turns.len() - 1]));
         let read = |mip_level: u32, layer: u32, [width, height]: [u32; 2]| {

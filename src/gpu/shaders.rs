@@ -47,7 +47,7 @@ pub enum BindingKind {
     StorageRead,
     /// A storage buffer that the shader writes.
     StorageReadWrite,
-    /// A filterable float texture: a 2-D array.
+    /// A filterable 2-D array texture of floats.
     TextureArray,
     /// A filterable 2-D float texture.
     Texture,

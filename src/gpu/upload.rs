@@ -1,4 +1,5 @@
-//! Writes from the host to device buffers: immediate, or staged, so that an encoder orders them with its other work.
+//! Writes from the host to device buffers. Immediate writes take effect before the next submission. Staged writes take effect
+//! where an encoder records them.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};

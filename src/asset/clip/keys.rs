@@ -18,7 +18,8 @@ pub enum Interpolation {
     Step = interpolation::INTERPOLATION_STEP,
     /// Linear interpolation; for rotations, along the shortest arc.
     Linear = interpolation::INTERPOLATION_LINEAR,
-    /// Cubic Hermite spline with tangents at each key, in units per second. Rotations are normalized afterwards.
+    /// Cubic Hermite spline with tangents at each key. A tangent is a change of the value per second. Interpolated rotations
+    /// are normalized.
     CubicSpline = interpolation::INTERPOLATION_SPLINE,
 }
 

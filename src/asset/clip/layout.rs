@@ -9,7 +9,7 @@ pub(super) struct Layout {
     tracks: Vec<Track>,
     times: Vec<f32>,
     values: Vec<[f32; 4]>,
-    // Maps each list of key times stored so far, as bits, to the index of its first time in `times`.
+    // Maps the bits of each stored list of key times to the index of the list's first time in `times`.
     known: std::collections::HashMap<Vec<u32>, usize>,
     last: f32,
 }

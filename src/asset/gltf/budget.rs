@@ -1,6 +1,7 @@
-//! Allocation budget of a document, in proportion to its size. Without a budget, small files could cause large allocations:
-//! accessors without a buffer view are zeros that take no bytes, and nodes, animations and textures may refer to the same bytes
-//! many times. Before an import allocates data that does not lie in the document, it charges that data here.
+//! Allocation budget of a document, in proportion to its size. Without a budget, small files could cause large allocations. An
+//! accessor without a buffer view consists of zeros that take no bytes in the file. Nodes, animations and textures may refer to
+//! the same bytes many times. Before an import allocates data that does not lie in the document, it charges this data to the
+//! budget.
 
 use std::cell::Cell;
 
@@ -88,7 +89,7 @@ impl Budget {
         bytes.saturating_mul(self.elements_a_byte).max(repeated)
     }
 
-    /// Refuses an accessor of more zeros than the document has bytes. [`ELEMENTS`] zeros are always allowed.
+    /// Refuses an accessor that consists of more zeros than the document has bytes. [`ELEMENTS`] zeros are always allowed.
     ///
     /// # Errors
     /// [`InputError`] with the largest count allowed.

@@ -57,7 +57,7 @@ impl<'a> Document<'a> {
         let value = json::parse(json)?;
         faults::check_version(&value)?;
         let extensions = Extensions::new(&value, is_bare)?;
-        // The tree is consumed below. It is parsed again only to quote a value in an error.
+        // The JSON tree is consumed below. The JSON is parsed again only to quote a value in an error.
         let again = || json::parse(json).unwrap_or_default();
         let root: Root =
             serde_path_to_error::deserialize(value).map_err(|error| faults::of_type(&again(), &error))?;

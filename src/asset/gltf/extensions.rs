@@ -150,7 +150,7 @@ fn extension<'a, T: Deserialize<'a>>(
     })
 }
 
-/// Refuses a document that requires an extension that is not supported.
+/// Refuses a document that requires an unsupported extension.
 fn check_required(document: &Value, is_bare: bool) -> Result<(), InputError> {
     let of_images = |name: &str| OF_IMAGES.iter().find(|(known, _)| *known == name);
     let is_read = |name: &str| {
@@ -172,7 +172,7 @@ fn check_required(document: &Value, is_bare: bool) -> Result<(), InputError> {
     }
 }
 
-/// Returns the texture's extension with an image format that cannot be read, and the remedy.
+/// Returns the extension by which a texture uses an image format that cannot be read, and the remedy. `None` if there is none.
 fn unread_image(texture: &Value) -> Option<(&'static str, &'static str)> {
     let given = texture.get("extensions")?;
     OF_IMAGES.into_iter().find(|(name, _)| given.get(name).is_some())

@@ -11,7 +11,7 @@ const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
 /// Parses the JSON of a document.
 ///
 /// # Errors
-/// [`InputError`] with line and column. For a text that is not a JSON object, it has the first characters instead.
+/// [`InputError`] with line and column. For a text that is not a JSON object, the error has the first characters instead.
 pub fn parse(json: &[u8]) -> Result<Value, InputError> {
     // glTF lets readers ignore a byte order mark.
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);

@@ -189,7 +189,7 @@ fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {
     }
 }
 
-/// Converts a sampler. Filters that it does not state become linear, with mip levels.
+/// Converts a sampler. Filters that the sampler does not state become linear, with mip levels.
 fn sampling(sampler: &Sampler) -> Sampling {
     let wrap = [sampler.wrap_s, sampler.wrap_t].map(|mode| match mode.unwrap() {
         WrappingMode::Repeat => Wrapping::Repeat,
@@ -212,7 +212,8 @@ fn sampling(sampler: &Sampler) -> Sampling {
     Sampling { wrap, magnified, minified, mips }
 }
 
-/// The texture coordinates at which a material's texture is sampled: a set of the mesh, and a transform.
+/// The texture coordinates at which a material's texture is sampled: one of the mesh's sets of texture coordinates, and a
+/// transform.
 pub struct Coordinates<'a> {
     /// Index n of the attribute `TEXCOORD_n`.
     pub set: u32,

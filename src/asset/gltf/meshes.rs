@@ -76,7 +76,7 @@ pub fn meshes(
     }
 }
 
-/// Morph weights of a node: the weights of the node, else of its mesh, else 0.
+/// Morph weights of a node: the node's own weights, or else the weights of its mesh, or else zeros.
 fn weights(document: &Document<'_>, node: usize, mesh: usize) -> Result<Vec<f32>, InputError> {
     let (of_node, of_mesh) = (&document.root.nodes[node], &document.root.meshes[mesh]);
     let first = of_mesh.primitives.first().and_then(|primitive| primitive.targets.as_ref());

@@ -13,18 +13,19 @@
 //! - Matrices of nodes are decomposed into translation, rotation and scale.
 //! - Accessors may be sparse, interleaved, and of normalized integers. Buffers may lie in the GLB, in `data:` URIs, or in files
 //!   beside the document.
-//! - A channel that animates morph weights, or a node that is not a bone, adds no keys to the clip. Its times still count for
-//!   the clip's duration.
+//! - A channel adds no keys to the clip if it animates morph weights, or if its node is not a bone. The times of such a channel
+//!   still count for the clip's duration.
 //! - **Meshes.** Each primitive becomes one [`Mesh`](crate::asset::Mesh), with vertices in the file's order. Meshes of nodes
 //!   with a skin come first, in the order of the nodes; meshes of nodes without a skin follow in the same order.
 //! - A mesh without a skin follows one bone, through a skin of its own. The bone is the lowest node, at or above the mesh's
 //!   node, that is a joint, an ancestor of joints, or animated. If there is none, the bone is the root of the tree, which never
-//!   moves. A node that becomes a bone for this reason does not become a joint. All its ancestors become bones as well.
+//!   moves. A node that becomes a bone only because a mesh follows it does not become a joint. All its ancestors become bones
+//!   as well.
 //! - Strips and fans become lists of triangles. Points, lines, and primitives without positions are left out. If no primitive
 //!   has positions, the document is refused.
 //! - Missing normals become smooth normals. Missing tangents, and tangents given without normals, are computed by MikkTSpace.
-//!   If there is a normal texture, MikkTSpace uses its texture coordinates, before any `KHR_texture_transform`. A vertex whose
-//!   corners have different tangents is duplicated at the end of its primitive, one copy per tangent.
+//!   If there is a normal texture, MikkTSpace uses the texture coordinates of that texture, before any `KHR_texture_transform`.
+//!   A vertex whose corners have different tangents is duplicated at the end of its primitive, one copy per tangent.
 //! - A vertex whose weights are all 0 follows the joint in its first slot, as in three.js. A vertex with more than
 //!   [`MAX_INFLUENCES`](crate::asset::influences::MAX_INFLUENCES) joints follows the strongest of them.
 //! - Triangles that are mirrored at rest get the reverse winding, see [`Mesh::indices`](crate::asset::Mesh::indices). If only
@@ -75,8 +76,8 @@
 //! # Limits
 //!
 //! Every error names the fault with its path in the file (`accessors[3].count`). No file causes a panic. No file causes an
-//! allocation out of proportion to its size, because counts are checked against the bytes present. Data that takes no bytes in
-//! the file has separate limits:
+//! allocation out of proportion to its size, because counts are checked against the bytes present. Data that may be much larger
+//! than its bytes in the file has separate limits:
 //!
 //! - An accessor without a buffer view has at most 65,536 elements, or one for each byte of the document and its buffers,
 //!   whichever is more.

@@ -19,8 +19,8 @@ use crate::asset::morph::{MorphDelta, MorphTarget};
 use crate::asset::skeleton::Skin;
 use crate::asset::tangents::TangentMesh as Surface;
 
-/// Elements charged to the budget per vertex for data that the import adds if the file lacks it: normal, tangent, texture
-/// coordinates and influence.
+/// Number of elements charged to the budget for every vertex. They cover the data that the import adds where the file lacks it:
+/// normal, tangent, texture coordinates and influence.
 const LACKING: usize = 4;
 
 /// Reader of one primitive. `path` is the primitive's path in the file.
@@ -107,8 +107,8 @@ impl<'d> Reader<'_, 'd> {
         self.primitive.material.map(|material| &self.document.root.materials[material.value()])
     }
 
-    /// Texture coordinates of the mesh. They are the coordinates of the base colour texture, or else of the normal map, and
-    /// must exist. A material with neither texture uses the first set, if there is one.
+    /// Texture coordinates of the mesh: the coordinates of the base colour texture, or else of the normal map. The primitive
+    /// must have these coordinates. Without either texture, the mesh has the first set, if there is one.
     fn coordinates(&self, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, InputError> {
         let Some(texture) = self.coordinates_of_material() else {
             return self.attribute::<2>(&Semantic::TexCoords(0), vertices);
@@ -166,7 +166,7 @@ impl<'d> Reader<'_, 'd> {
         one_a_vertex(&self.named(&semantic.to_string()), elements.attributes()?, vertices).map(Some)
     }
 
-    /// Unit normals from the file. Missing normals, and normals without length, are computed from the triangles.
+    /// Unit normals from the file. Missing normals, and normals without a direction, are computed from the triangles.
     fn normals(&self, positions: &[[f32; 3]], indices: &[u32]) -> Result<Vec<[f32; 3]>, InputError> {
         let Some(given) = self.attribute::<3>(&Semantic::Normals, positions.len())? else {
             return Ok(smooth_normals(positions, indices));
@@ -215,7 +215,7 @@ impl<'d> Reader<'_, 'd> {
         check_indices(&format!("{}.indices", self.path), &indices, vertices)?;
         // Draco data is always a triangle list, whatever the primitive's mode says.
         let mode = if self.decompressed.is_some() { Mode::Triangles } else { self.primitive.mode.unwrap() };
-        // Strips and fans have about one triangle per index, so each index is charged as three.
+        // Strips and fans have about one triangle per index, so each index is charged as three elements.
         self.document.budget.spend(&self.path, 3 * indices.len())?;
         // Strips contain degenerate triangles that join their parts; these are dropped.
         let is_flat = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;

@@ -9,8 +9,8 @@ use crate::InputError;
 use crate::asset::mesh::Mesh;
 use crate::asset::tangents::{TangentMesh as Surface, tangents};
 
-/// Largest number of triangles around a vertex for which MikkTSpace is used. The time of MikkTSpace grows with the square of
-/// this number, and it visits the triangles by recursion. A surface with more triangles around a vertex gets the tangents of
+/// Largest number of triangles around a vertex for which MikkTSpace is used. MikkTSpace visits these triangles by recursion,
+/// and its time grows with the square of their number. A surface with more triangles around a vertex gets the tangents of
 /// [`crate::surface::tangent`].
 const MAX_AROUND: u32 = 1024;
 
@@ -34,8 +34,8 @@ pub fn solved(surface: &Surface<'_>) -> Result<Tangents, InputError> {
     Ok(Tangents { tangents: tangents(surface)?, indices, copied: Vec::new() })
 }
 
-/// Computes tangents by MikkTSpace. If no triangle at a vertex has an area in space and in texture space, the vertex gets the
-/// tangent of [`solved`].
+/// Computes tangents by MikkTSpace. A vertex gets the tangent of [`solved`] if none of its triangles has an area both in space
+/// and in texture space.
 ///
 /// # Errors
 /// The errors of [`solved`].

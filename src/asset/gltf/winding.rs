@@ -7,7 +7,7 @@ use glam::DMat4;
 use crate::asset::Mesh;
 use crate::asset::skeleton::{Skeleton, Skin};
 
-/// For each bone, whether its global transform mirrors in the rest pose. A singular transform counts as not mirroring.
+/// For each bone, whether its global transform mirrors in the rest pose. A scale of 0 counts as positive.
 pub fn mirrored(skeleton: &Skeleton) -> Vec<bool> {
     let mut mirrored: Vec<bool> = Vec::with_capacity(skeleton.len());
     for bone in skeleton.bones() {

@@ -7,7 +7,7 @@ use super::Model;
 use crate::InputError;
 use crate::asset::{Clip, Material, Mesh, Skeleton, Skin};
 
-/// A model as serde reads it, before validation; its components may not match.
+/// A model as serde reads it, before validation; its components may not match each other.
 #[derive(Deserialize)]
 #[serde(rename = "Model")]
 pub(super) struct StoredModel {

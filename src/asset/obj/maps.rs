@@ -6,7 +6,7 @@ use super::statements::Statement;
 use crate::InputError;
 use crate::asset::beside::path_below;
 
-/// An image reference of a material, with its options.
+/// A material's reference to an image, with the options of the reference.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Map {
     /// Name of the image as the file states it.

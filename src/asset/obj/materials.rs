@@ -200,8 +200,8 @@ fn opaque(mut image: RgbaImage) -> RgbaImage {
     image
 }
 
-/// Sets an image's alpha from an opacity image. The source is the opacity image's alpha if it has any transparency, otherwise
-/// its brightness. The opacity image is resized to fit.
+/// Sets an image's alpha from an opacity image. The source is the alpha of the opacity image if any of its texels is
+/// transparent, otherwise its brightness. The opacity image is resized to the size of `image`.
 fn set_opacity(image: &mut RgbaImage, mut opacity: RgbaImage) {
     if opacity.dimensions() != image.dimensions() {
         opacity = resize(&opacity, image.width(), image.height(), FilterType::Triangle);

@@ -1,6 +1,6 @@
-//! Divides polygons into triangles: fans if they are convex, and ear clipping otherwise (Meisters, "Polygons Have Ears", 1975).
-//! Every corner stays, even on a straight line between its neighbours. Polygons that share an edge thus still share all points
-//! of that edge.
+//! Divides polygons into triangles: a convex polygon by a fan, any other polygon by ear clipping (Meisters, "Polygons Have
+//! Ears", 1975). Every corner stays, even on a straight line between its neighbours. Polygons that share an edge thus still
+//! share all points of that edge.
 
 use glam::{DVec2, DVec3};
 
@@ -69,8 +69,8 @@ fn clipped(flat: &[DVec2]) -> Vec<[usize; 3]> {
         }
         triangles.push(ear);
         left.remove(at);
-        // Both neighbours of the ear have changed, so all corners are tried again. Skipping the next corner
-        // gives triangles that are less thin than a fan's.
+        // Both neighbours of the ear have changed, so all corners are tried again. The next corner is skipped, so that the
+        // triangles are less thin than in a fan.
         (at, tried) = ((at + 1) % left.len(), 0);
     }
     triangles.push([left[0], left[1], left[2]]);

@@ -168,7 +168,7 @@ fn object<'a>(
 #[derive(Default)]
 struct Library {
     text: String,
-    /// Name in the library of each material that meshes use, by the material's index.
+    /// For each material that meshes use, by its index: its name in the library.
     names: HashMap<usize, String>,
     /// A name that no material of the library has.
     none: String,
@@ -207,8 +207,8 @@ impl Library {
         Ok(library)
     }
 
-    /// Material name to write for a mesh. A mesh without a material gets a name that the library lacks, because this ends the
-    /// previous mesh's material.
+    /// Name of the material to write for a mesh. A mesh without a material gets a name that the library lacks. Otherwise, the
+    /// mesh would get the material of the previous mesh.
     fn material(&self, mesh: &Mesh) -> Option<&str> {
         let named = mesh.material.and_then(|material| self.names.get(&material));
         named.or_else(|| (!self.names.is_empty()).then_some(&self.none)).map(String::as_str)

@@ -73,7 +73,8 @@ impl Animation<'_> {
     }
 }
 
-/// Divides each tangent by the duration of its segment in seconds. Clips store tangents multiplied by it; glTF does not.
+/// Divides each tangent by the duration of its segment in seconds. Clips store tangents multiplied by this duration; glTF does
+/// not.
 fn unstretch_tangents(times: &[f32], values: &mut [[f32; 4]]) {
     for (key, pair) in times.windows(2).enumerate() {
         let seconds = pair[1] - pair[0];

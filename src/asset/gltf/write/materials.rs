@@ -22,7 +22,7 @@ pub(super) struct Materials {
 }
 
 impl Materials {
-    /// Returns the index of a mesh's material in the document. A double-sided mesh without a material gets an empty one,
+    /// Returns the index of a mesh's material in the document. A double-sided mesh without a material gets an empty material,
     /// because glTF states in the material whether triangles are double-sided.
     pub fn index(
         &mut self,
