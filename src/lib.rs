@@ -22,8 +22,8 @@
 //! Further crates of the repository:
 //!
 //! - `relievo-samples` has a creature with clips, and height maps with their colours.
-//! - `relievo-lab` compares every kernel with its reference, and the kernel's time with the time of copying the same number of
-//!   bytes. It also reports the cost and the visible error of levels of detail on the caller's own data.
+//! - `relievo-lab` checks every kernel against its reference. It compares the kernel's time with the time of copying the same
+//!   number of bytes. It also reports the cost and the visible error of levels of detail on the caller's own data.
 //! - `relievo-cli` is the program `relievo`.
 //!
 //! The documentation cites two theses as **A** and **B**, by section, table or equation. `docs/sources.md` in the repository has

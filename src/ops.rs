@@ -1,6 +1,6 @@
 //! Operations: GPU passes over the caller's buffers, each with a CPU reference. The scene is built from operations.
 //!
-//! **This interface may change in a minor release**; the scene and the modules beside it may not.
+//! **This interface may change in a minor release.** The scene interface may not (see the [crate documentation](crate)).
 //!
 //! Some functions of the scene take or return types of operations. `scene` and `render` re-export these types: import them from
 //! there. The parts of a terrain's configuration (`terrain::config`) are as stable as `scene::TerrainConfig`.

@@ -50,14 +50,14 @@ macro_rules! nearest_on_triangle {
 }
 
 nearest_on_triangle! {
-    /// The point of a triangle that is nearest to `point`. Computed from the Voronoi regions of corners, edges and
-    /// inside (Ericson, "Real-Time Collision Detection", section 5.1.5). The triangle may be degenerate: a line or a
-    /// point.
+    /// The point of a triangle that is nearest to `point`. Computed from the Voronoi regions of the corners, the edges
+    /// and the interior (Ericson, "Real-Time Collision Detection", section 5.1.5). The triangle may be degenerate: a
+    /// line or a point.
     ///
     /// For triangle sizes and distances from 1e-8 to 1e9, the error is about 1e-6 of the size or the distance,
-    /// whichever is larger. Beyond this range, `f32` cannot represent the fourth powers of these lengths, but the
-    /// result still lies on the triangle. The distance from `point` to the result may be too large, but is never too
-    /// small.
+    /// whichever is larger. The computation uses fourth powers of these lengths. Beyond this range, `f32` cannot
+    /// represent these powers, but the result still lies on the triangle. The distance from `point` to the result may
+    /// be too large, but is never too small.
     nearest_on_triangle, Vec3, f32
 }
 
@@ -81,7 +81,7 @@ mod tests {
         assert_eq!(found(1.0, -2.0), [1.0, 0.0]);
         assert_eq!(found(-2.0, 1.0), [0.0, 1.0]);
         assert_eq!(found(1.0, 1.0), [1.0, 1.0]);
-        // A point above the middle of the long edge, displaced along the edge's normal.
+        // The middle of the long edge, displaced along the edge's normal.
         let [x, y] = found(2.0 + 3.0, 1.5 + 4.0);
         assert!((x - 2.0).abs() < 1e-6 && (y - 1.5).abs() < 1e-6, "{x} {y}");
     }

@@ -37,10 +37,11 @@
 //! # Order
 //!
 //! Collapses are approximately ordered by cost, the cheapest first. Squared costs within a quarter of an octave count
-//! as equal, and are taken in the order in which they were found. A point's cost is recomputed only when its turn
-//! comes, so a point that has become cheaper is taken late. In seven of eight steps, the collapse costs at most a tenth
-//! more than the cheapest one. A point collapses into the neighbour for which the mean term of [`Cost::Quadric`] is
-//! smallest. The other term is computed afterwards. An exact order takes longer, and gave no smaller error in tests.
+//! as equal. Among collapses of equal cost, the collapse that was found first is made first. A point's cost is
+//! recomputed only when its turn comes, so a point that has become cheaper is taken late. In seven of eight steps, the
+//! collapse costs at most a tenth more than the cheapest one. A point collapses into the neighbour for which the mean
+//! term of [`Cost::Quadric`] is smallest. The distance terms are computed afterwards. An exact order takes longer, and
+//! gave no smaller error in tests.
 //!
 //! The same input gives the same collapses on every machine ([`Simplified::hash`]): the code uses only `+ − × ÷` and
 //! square roots, in a fixed order. The computing time grows slightly faster than the number of triangles, and linearly
@@ -76,8 +77,8 @@ pub struct Surface<'a> {
     /// Three indices per triangle.
     pub indices: &'a [u32],
     /// Attributes of all vertices in the first pose: `stride` finite numbers per vertex, such as normals and texture
-    /// coordinates. Over the area of a square, an attribute difference of 1 costs as much as a displacement by the
-    /// square's edge length. For normals, unit vectors scaled by a tenth are a good first choice.
+    /// coordinates. An attribute difference of 1 over a square area costs as much as a displacement by the square's
+    /// edge length. For normals, unit vectors scaled by a tenth are a good first choice.
     pub attributes: &'a [f32],
     /// Number of attribute values per vertex; may be 0.
     pub stride: usize,
@@ -87,18 +88,18 @@ pub struct Surface<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Cost {
     /// Quadric error (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997). The
-    /// cost is the root mean square distance from the planes of all triangles that were merged into the point. Each
-    /// triangle's weight is the square root of its area, so that details count.
+    /// cost is the root mean square distance of the neighbour from the planes of all triangles that were merged into
+    /// the point. Each triangle's weight is the square root of its area, so that details count.
     ///
     /// A mean can hide a large error at one spot. The cost is therefore at least 0.35 times the point's own distance
     /// from the planes of its triangles after the collapse. On a border, the distance from the border's new edge also
-    /// counts. Additional planes hold borders and seams in place: they contain the edge and are perpendicular to the
-    /// surface (section 6 of the paper).
+    /// counts. Additional planes hold borders and seams in place (section 6 of the paper). Each of them contains an
+    /// edge of the border or seam, and is perpendicular to the surface.
     ///
     /// Attributes add a cost, computed separately for each wedge (Hoppe, "New Quadric Metric for Simplifying Meshes
     /// with Appearance Attributes", Visualization 1999). With attributes, the minimum above does not apply. Instead,
-    /// the larger of two distances is added to the cost: 0.63 times the point's own distance, and 1.26 times the
-    /// distance between the middle of a new edge and the previous triangles.
+    /// the larger of two terms is added to the cost: 0.63 times the point's own distance, and 1.26 times the distance
+    /// between the middle of a new edge and the previous triangles.
     #[default]
     Quadric,
     /// Edge length times curvature (Melax, "A Simple, Fast, and Effective Polygon Reduction Algorithm", 1998; B
@@ -122,10 +123,10 @@ pub enum Seams {
     #[default]
     Held,
     /// Seams may be crossed if their wedges differ only in the first `attributes` numbers of [`Surface::attributes`].
-    /// Each wedge then moves to the cheapest of the neighbour's vertices that have the same remaining numbers. For
-    /// example, if normals come before texture coordinates, `attributes: 3` allows hard edges to collapse and keeps
-    /// texture seams. Crossing costs the difference of the attributes over the affected area. (In meshoptimizer, this
-    /// is the option `Permissive`.)
+    /// Each wedge then moves to the cheapest of several vertices of the neighbour: the vertex at the common edge, and
+    /// all vertices that differ from it only in these numbers. For example, if normals come before texture coordinates,
+    /// `attributes: 3` allows hard edges to collapse and keeps texture seams. Crossing costs the difference of the
+    /// attributes over the affected area. (In meshoptimizer, this is the option `Permissive`.)
     Crossed {
         /// Number of leading attributes that may differ, 0 to [`Surface::stride`].
         attributes: usize,
@@ -148,8 +149,9 @@ pub struct SimplifyOptions {
     /// Whether disconnected parts of the surface may vanish as a whole. The cost of a part has two terms. The first is
     /// half of the largest distance from its points to the other remaining parts, in the worst pose. The second is the
     /// variation of its attributes over its area. For example, a screw vanishes when its plate loses details of similar
-    /// size, but a lone rock stays. One part always stays. With tens of thousands of parts, this search takes longer
-    /// than all collapses. The option works with [`Cost::Quadric`] only, and has no effect in [`simplify_within`].
+    /// size, but a lone rock stays. One part always stays. With tens of thousands of parts, finding the parts that
+    /// vanish takes longer than all collapses. The option works with [`Cost::Quadric`] only, and has no effect in
+    /// [`simplify_within`].
     pub prune: bool,
 }
 
@@ -194,8 +196,8 @@ pub enum Stopped {
     Flips,
     /// No collapse is legal: for most remaining points, the topology would change, or the surface is not manifold there.
     Topology,
-    /// No collapse is legal: for most remaining points, a removed point would be farther away than [`simplify_within`]
-    /// allows.
+    /// No collapse is legal: for most remaining points, a removed point would end up farther from the surface than
+    /// [`simplify_within`] allows.
     Distance,
 }
 
@@ -386,9 +388,9 @@ pub(crate) struct Groups<'a> {
     /// Rigid body of each vertex, or [`NO_BODY`]; empty if there are no bodies. Vertices of one body keep their
     /// distances from each other in every pose.
     pub bodies: &'a [u32],
-    /// Mesh of each triangle; empty if all triangles belong to one mesh. A mesh keeps a triangle at every remaining
-    /// point that its triangles meet. Otherwise a narrow piece of a mesh could vanish between its neighbours, far from
-    /// all other triangles of the same mesh.
+    /// Mesh of each triangle; empty if all triangles belong to one mesh. A mesh keeps at least one triangle at every
+    /// remaining point that its triangles touch. Otherwise a narrow piece of a mesh could vanish between neighbouring
+    /// meshes, although all other triangles of its mesh are far away.
     pub meshes: &'a [u32],
 }
 

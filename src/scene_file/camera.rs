@@ -37,7 +37,7 @@ impl CameraPath {
         self.keys[self.keys.len() - 1].time
     }
 
-    /// The camera at `time` seconds, for a picture of `viewport` pixels. Its cell is the cell that contains the eye.
+    /// The camera at `time` seconds, for a picture of `viewport` pixels. The camera's cell is the cell that contains the eye.
     pub fn camera(&self, time: f64, viewport: [u32; 2], depth: Depth) -> Camera {
         let CameraKey { at, look, field_of_view, .. } = self.key(time);
         let edge = f64::from(Placement::CELL);

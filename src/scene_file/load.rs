@@ -114,7 +114,7 @@ struct Levelled {
     resting: Option<Arc<Model>>,
 }
 
-/// How objects use a model that has levels of detail.
+/// How meshes and characters use a model. Its levels of detail are computed for these uses.
 #[derive(Default)]
 struct Needs {
     /// The clips that characters play.

@@ -16,7 +16,7 @@ use crate::scene::Transition;
 use crate::surface::ReliefShadow;
 use crate::surface::relief::{MAX_SCALE, ReliefMethod};
 
-/// Largest number of instances of a mesh and of a character. Characters are limited further, because their bones take memory.
+/// Largest number of instances of a mesh and of a character. The limit for characters is lower, because their bones take memory.
 const MAX_MESHES: usize = 1 << 20;
 const MAX_CHARACTERS: usize = 1 << 16;
 

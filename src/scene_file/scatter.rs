@@ -17,7 +17,7 @@ pub(super) struct Drawn {
     /// The angle about the vertical axis, 0 to 2π.
     pub turn: f64,
     pub scale: f32,
-    /// The fraction of the clip that the character has played by time 0.
+    /// The fraction of the clip that the character has played by the start time of its entry.
     pub phase: f64,
 }
 
@@ -102,8 +102,8 @@ mod tests {
         assert_eq!([x, z].map(f64::to_bits), KNOWN, "{x}, {z}");
     }
 
-    /// The bits of the first place of the seed "rocks", computed by a separate implementation of Threefry in Python.
-    /// These bits must not change, because other positions would change users' scenes.
+    /// The bits of x and z of the first position for the seed "rocks", computed by a separate implementation of Threefry in
+    /// Python. These bits must not change, because other positions would change users' scenes.
     const KNOWN: [u64; 2] = [0x4004_cb01_0040_0000, 0x4024_87f3_4130_0000];
 
     #[test]

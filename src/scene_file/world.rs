@@ -235,7 +235,7 @@ fn spawn_one(
     Ok(())
 }
 
-/// Puts the path of an input error below a path in the scene file.
+/// Prepends a path in the scene file to the path of an input error.
 fn below(path: &str, error: Error) -> Error {
     match error {
         Error::Input(error) => Error::Input(error.below(path)),
@@ -243,8 +243,8 @@ fn below(path: &str, error: Error) -> Error {
     }
 }
 
-/// Gives the error of a level-of-detail setting its path in the scene file: `criterion.from[0]` of `meshes[1]` becomes
-/// `meshes[1].lod.from[0]`.
+/// Converts the path of an error in level-of-detail settings to a path in the scene file. For example, `criterion.from[0]` of
+/// `meshes[1]` becomes `meshes[1].lod.from[0]`.
 fn in_file(error: InputError, entry: &str) -> InputError {
     let groups = ["criterion.", "choice.", "perceptual."];
     let path =

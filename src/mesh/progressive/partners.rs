@@ -10,14 +10,15 @@ pub(crate) struct Became<'a> {
     pub remap: &'a [u32],
 }
 
-/// The partner of each vertex ([`Mesh::partners`](crate::asset::Mesh::partners)). `finest` are the triangles of level
-/// 0, and `levels` the levels 1, 2 …. `place` returns the mesh of a vertex, and a number for its position. All vertices
-/// at one position have the same number.
+/// The partner of each vertex ([`Mesh::partners`](crate::asset::Mesh::partners)). `finest` has the triangles of level
+/// 0. `levels` has the levels 1, 2, …. `place` returns the mesh of a vertex, and a number for its position. All
+/// vertices at one position have the same number.
 ///
 /// A vertex may have collapsed into a target that no triangle of the level uses, or that belongs to another mesh. This
-/// happens if all triangles of the vertex vanish. Its partner is then another vertex of its own mesh, at the target's
-/// position. This is valid because degenerate triangles depend on positions only. If no such vertex exists, one of the
-/// vertices that collapsed to this position becomes the partner of the others.
+/// happens if all triangles of the vertex vanish. In this case, the partner is another vertex of the same mesh, at the
+/// target's position. This is valid because the vanished triangles only need to become degenerate. This depends only on
+/// positions. If no such vertex exists, one of the vertices that collapsed to this position becomes the partner of the
+/// others.
 pub(crate) fn partners(
     finest: &[u32],
     levels: &[Became<'_>],

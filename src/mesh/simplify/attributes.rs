@@ -6,8 +6,8 @@
 //! triangle as much as one on the largest.
 //!
 //! Sums are in f32, which halves the memory traffic. For attributes that are linear over a flat surface, the cost is
-//! therefore not exactly 0. Its square root can be 3 · 10⁻⁴ times the square root of the cost that the attribute change
-//! alone would have.
+//! therefore not exactly 0. The reference for this error is the cost of the same attribute change without a change of
+//! position. The square root of the error can be 3 · 10⁻⁴ of the square root of the reference.
 
 use glam::{DVec3, Vec3, Vec4};
 
@@ -80,7 +80,7 @@ impl<'a> Own<'a> {
         squares * self.head[1].w - 2.0 * at(sum, d)
     }
 
-    /// Half the gradient, at the offset `d`, of the part of the cost that does not depend on the replacement's
+    /// Half the gradient of a part of the cost, at the offset `d`. This part does not depend on the replacement's
     /// attributes.
     #[inline]
     fn slope(&self, d: Vec3) -> Vec3 {
@@ -172,8 +172,8 @@ impl<'a> Attributes<'a> {
         &self.values[vertex as usize * self.stride..][..self.stride]
     }
 
-    /// Reads the first and last sum of a vertex to prefetch them. The returned number only prevents the compiler from
-    /// dropping the reads.
+    /// Reads the start and the end of a vertex's record to prefetch it. The returned number only prevents the compiler
+    /// from dropping the reads.
     #[inline]
     pub(crate) fn touch(&self, vertex: u32) -> u32 {
         let own = self.of(vertex);

@@ -60,7 +60,7 @@ struct Meet {
     other: u32,
 }
 
-/// A vertex of a point that is used by at least one triangle.
+/// A vertex of a point, used by at least one triangle.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Wedge {
     pub vertex: u32,
@@ -75,7 +75,8 @@ pub(crate) struct Neighbors {
     all: Vec<Neighbor>,
     wedges: Vec<Wedge>,
     sheets: usize,
-    /// Pairs of a neighbour and one of its vertices that triangles use. Empty unless seams may be crossed.
+    /// Pairs: a neighbour, and one of its vertices. Lists all vertices that triangles use. Empty unless seams may be
+    /// crossed.
     beyond: Vec<[u32; 2]>,
 }
 
@@ -127,8 +128,8 @@ impl Neighbors {
         }
     }
 
-    /// Lists each wedge once, with its sheet. Two wedges are in one sheet if their triangles share an edge whose far
-    /// end has one vertex.
+    /// Lists each wedge once, with its sheet. Two wedges are in one sheet if two of their triangles share an edge, and
+    /// use the same vertex at its far end.
     fn find_sheets(&mut self, topology: &Topology, points: &Points, point: u32, vertices: &mut Marks) {
         self.wedges.clear();
         vertices.clear();

@@ -13,8 +13,8 @@ use super::topology::Topology;
 use crate::mesh::nearest::precise_nearest_on_triangle;
 use tree::Tree;
 
-/// Weight of the squared distance between a part and the other parts. In terms of distances, the cost of a part is thus
-/// half of its distance. It vanishes slightly before collapses that move the surface by this distance.
+/// Weight of the squared distance between a part and the other parts. The square root of the cost is thus half of the
+/// distance. A part vanishes slightly before collapses that move the surface by the part's distance.
 const FACTOR: f64 = 0.25;
 
 /// A part is first measured when the next collapse costs this fraction of the part's radius. By this time, most of its
@@ -43,7 +43,8 @@ pub(crate) struct Parts {
     waiting: BinaryHeap<Reverse<(u32, u32)>>,
     /// Number of parts measured so far.
     round: u64,
-    /// Pairs of a point of the measured part, and the other part that is nearest to the point or near enough.
+    /// Pairs: a point of the measured part, and another part. The other part is the one nearest to the point, or near
+    /// enough to end the search.
     heirs: Vec<[u32; 2]>,
     /// Stack of tree nodes that a search has not visited yet, each with its squared distance.
     open: Vec<(f64, u32)>,
@@ -90,8 +91,8 @@ impl Parts {
             let own = std::mem::take(&mut self.all[part as usize].points);
             let heritage = std::mem::take(&mut self.all[part as usize].heritage);
             let more = more(&own);
-            // Square of twice the distance at which the cost is `most`. A part beyond it is queued with a much larger
-            // cost, so it is not measured again soon.
+            // Square of twice the distance at which the cost is `most`. The search ends beyond this distance. The part
+            // is queued with a cost far above `most`, so it is not measured again soon.
             let enough = (f64::from(most) - more).max(0.0) * 4.0 / FACTOR;
             let cost = (self.distance(points, topology, [&own, &heritage], enough) * FACTOR + more) as f32;
             let cost = queued.max(cost);
@@ -139,8 +140,8 @@ impl Parts {
         worst
     }
 
-    /// Squared distance to the nearest triangle of any remaining part, and this part. `known` has the squared distance
-    /// to one of the parts, and this part.
+    /// Squared distance from `from` to the nearest triangle of any remaining part, and the index of this part. `known`
+    /// has the same two values for a part that is already measured, or infinity and `None`.
     fn nearest(
         &mut self,
         points: &Points,

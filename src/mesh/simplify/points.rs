@@ -20,7 +20,7 @@ pub(crate) struct Points {
     are_vertices: bool,
     /// Rigid body of each point, or [`NO_BODY`]. Empty if the mesh has no rigid bodies.
     bodies: Vec<u32>,
-    /// Chart of each vertex, named by the first vertex of the point that is on the same chart. No seam separates
+    /// Chart of each vertex. Its identifier is the first vertex of the same point on this chart. No seam separates
     /// vertices of one chart. Empty if every vertex is its own chart.
     charts: Vec<u32>,
 }
@@ -178,13 +178,13 @@ impl Points {
         DVec3::new(f64::from(x), f64::from(y), f64::from(z))
     }
 
-    /// For each vertex, the number of its point.
+    /// For each vertex, the index of its point.
     pub(crate) fn into_of(self) -> Vec<u32> {
         self.of
     }
 }
 
-/// For each vertex, the number of its point.
+/// For each vertex, the index of its point.
 fn weld(poses: &[Vec<[f32; 3]>]) -> Vec<u32> {
     // Adding 0 turns −0 into +0.
     let bits = |pose: &[[f32; 3]], vertex: usize| pose[vertex].map(|x| (x + 0.0).to_bits());

@@ -5,9 +5,9 @@ use glam::DVec3;
 /// A weighted sum of squares of linear functions of the offset d from an origin: `dᵀ A d + 2 b·d + c`.
 ///
 /// The origin is the position of the point that owns the quadric. The planes of the point's triangles pass through this
-/// origin, so the numbers stay small wherever the mesh lies. The quadric is in f64 because costs are squares: a
-/// rounding error of 2⁻⁵² then amounts to 10⁻⁸ of an edge. In f32 it would be 2 · 10⁻⁴ of an edge, and flat ground
-/// would have a cost above 0.
+/// origin, so the numbers stay small wherever the mesh lies. The quadric is in f64 because a cost is a squared
+/// distance. A rounding error of 2⁻⁵² in the cost is an error of 10⁻⁸ of an edge in the distance. In f32, this error
+/// would be 2 · 10⁻⁴ of an edge, and flat ground would have a cost above 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Quadric {
     /// Upper triangle of A: xx, xy, xz, yy, yz, zz.

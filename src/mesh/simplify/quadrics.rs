@@ -10,7 +10,7 @@ use super::turned::normal;
 
 /// Weight of the planes that hold border edges, relative to the planes of triangles. It is 2 because a border edge has
 /// one triangle instead of two. If a single spot leaves the border, `deviation` detects it. With a weight five times as
-/// large, models with many borders keep too many points there, and lack them elsewhere.
+/// large, models with many borders keep too many points on borders, and too few elsewhere.
 const BORDER: f64 = 2.0;
 
 /// Weight of the planes that hold seam edges, for each of the two triangles at an edge. It is smaller than [`BORDER`]
@@ -68,8 +68,9 @@ impl<'a> Quadrics<'a> {
         worst
     }
 
-    /// Cheapest collapse of a point with one vertex: the cost and the neighbour. Among equal costs, the lower neighbour
-    /// is taken. `None` if the point has no neighbour, or if attributes count and a neighbour has several vertices.
+    /// Cheapest collapse of a point with one vertex: the cost and the neighbour. Among equal costs, the neighbour with
+    /// the lower index is taken. `None` if the point has no neighbour, or if there are attributes and a neighbour has
+    /// several vertices.
     #[inline]
     pub(crate) fn cheapest(
         &self,
@@ -214,8 +215,9 @@ impl<'a> Quadrics<'a> {
     }
 }
 
-/// Whether it pays off to sum the wedges of a point once. This needs many wedges, and all of them must become the same
-/// vertex at every neighbour with one vertex.
+/// Whether the attribute errors of a point's wedges are summed once for all neighbours. This pays off only for many
+/// wedges. It also requires that one vertex replaces all wedges. This holds for a point with one sheet, if seams may
+/// not be crossed.
 fn is_joined(points: &Points, neighbors: &Neighbors) -> bool {
     neighbors.wedges().len() >= JOINED && !neighbors.is_split() && !points.has_charts()
 }

@@ -30,8 +30,8 @@ struct Reducer<'a> {
     parts: Parts,
     /// Mesh of each triangle; empty if all triangles belong to one mesh.
     meshes: Vec<u32>,
-    /// Points with an illegal collapse that is cheaper than the queued one. This collapse may become legal when
-    /// triangles around the point change.
+    /// For each point, whether an illegal collapse is cheaper than the queued collapse. The illegal collapse may become
+    /// legal when triangles around the point change.
     watched: Vec<bool>,
     /// Two sets of marks: for points, and for vertices.
     marks: [Marks; 2],
@@ -220,7 +220,7 @@ impl<'a> Reducer<'a> {
         self.quadrics.as_ref().is_some_and(Quadrics::has_attributes)
     }
 
-    /// The cheapest legal collapse, up to the width of the queue's buckets.
+    /// The cheapest legal collapse. Costs in the same bucket of the queue count as equal.
     fn next(&mut self, queue: &mut Queue) -> Option<(u32, Best)> {
         loop {
             self.fetch(queue);
@@ -275,8 +275,9 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Prefetches the data of the next few points. Points with consecutive costs are scattered in memory; this way, the
-    /// processor waits for all of them at once. Each round of reads yields the addresses for the next round.
+    /// Prefetches the data of the next few points. Points with consecutive costs are scattered in memory. Reading them
+    /// together lets the processor wait for all of them at once. Each round of reads yields the addresses for the next
+    /// round.
     fn fetch(&self, queue: &Queue) {
         let (mut read, ahead) = (0, queue.ahead());
         let quadric = |point: u32| match &self.quadrics {
@@ -317,9 +318,9 @@ impl<'a> Reducer<'a> {
     }
 
     /// Reconsiders the neighbours of changed points. The normals of changed points are new, and so are the triangles to
-    /// which samples may be assigned. A refused collapse of a neighbour may therefore be legal now. There is no other
-    /// reason to reconsider a point whose own triangles are unchanged: its triangles turn as before, and an edge can
-    /// only gain common neighbours.
+    /// which samples may be assigned. A refused collapse of a neighbour may therefore be legal now. For a point whose
+    /// own triangles are unchanged, nothing else can make a collapse legal. Its triangles turn as before, and the ends
+    /// of an edge can only gain common neighbours.
     fn wake(&mut self, queue: &mut Queue, changed: &[u32]) {
         let mut around = Vec::new();
         changed.iter().for_each(|point| self.topology.refresh(*point));
@@ -362,7 +363,8 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// Merges a point into its neighbour with all of its vertices, including vertices that no triangle uses any more.
+    /// Merges a point into its neighbour. All vertices of the point are replaced, even those that no triangle uses any
+    /// more.
     fn collapse(&mut self, point: u32, neighbor: u32, moved: &mut Vec<[u32; 2]>) {
         self.listed = None;
         let start = moved.len();

@@ -7,13 +7,14 @@ use super::points::Points;
 use super::topology::Topology;
 use crate::mesh::nearest::nearest_on_triangle;
 
-/// Number of samples per point that are tested first.
+/// Number of witnesses per point: samples that are tested before all others.
 const WITNESSES: usize = 4;
 
 /// Marks a missing sample or triangle.
 const NONE: u32 = u32::MAX;
 
-/// Marks a sample that triangles of any mesh may represent, and a triangle where meshes are not told apart.
+/// Used instead of a mesh index. For a sample: triangles of any mesh may represent it. For a triangle: all triangles
+/// belong to one mesh.
 const ANY: u32 = u32::MAX;
 
 /// Samples of the mesh. Each sample is assigned to a remaining triangle, and is within the allowed distance of it in
@@ -24,12 +25,13 @@ pub(crate) struct TrackedSamples {
     samples: Vec<Vec<u32>>,
     /// For each sample, the triangle to which it is assigned.
     homes: Vec<u32>,
-    /// Mesh of each triangle; empty if all triangles belong to one mesh. A sample is assigned to triangles of its own
-    /// mesh alone.
+    /// Mesh of each triangle; empty if all triangles belong to one mesh. A sample is assigned only to triangles of its
+    /// own mesh.
     meshes: Vec<u32>,
-    /// For each point, the only mesh that it belonged to in the original, or [`ANY`]. Empty like `meshes`.
+    /// For each point, its mesh in the original; [`ANY`] if several meshes or none had the point. Empty if `meshes` is
+    /// empty.
     meshes_of_points: Vec<u32>,
-    /// For each point, the samples because of which its collapses were last refused. Most collapses are tested
+    /// For each point, the samples that caused the latest refusals of its collapses. Most collapses are tested
     /// repeatedly, and one sample is usually enough to refuse a collapse.
     witnesses: Vec<[u32; WITNESSES]>,
     middles: Middles,
@@ -38,7 +40,7 @@ pub(crate) struct TrackedSamples {
     verdicts: Verdicts,
     /// The last tested collapse, if it stays within the allowed distance.
     looked_at: Option<[u32; 2]>,
-    /// Triangles after the last tested collapse, the changed triangles first.
+    /// Triangles around both points after the last tested collapse, the changed triangles first.
     faces: Vec<Face>,
     /// Number of triangles that the last tested collapse changes.
     changed: usize,
@@ -137,7 +139,8 @@ fn off(points: &Points, corners: &Corners, sample: &Place<impl Fn(usize) -> Vec3
     largest
 }
 
-/// Squared distance from a sample to the nearest of `faces`. The distance to a face is the largest over all poses.
+/// Squared distance from a sample to the nearest of those `faces` that may represent it. The distance to a face is the
+/// largest over all poses.
 fn nearest_off<'a>(
     points: &Points,
     sample: &Place<impl Fn(usize) -> Vec3>,
@@ -183,7 +186,8 @@ impl Face {
             middle,
             radius,
             normal: if is_exact { normal.normalize_or_zero() } else { Vec3::ZERO },
-            // Positions are mostly within ±2. Per unit of length, the normal's error is 2⁻²⁴ divided by the sine.
+            // The first term bounds the errors of positions, which are mostly within ±2. The second bounds the error of
+            // the normal. Per unit of length, it is 2⁻²⁴ divided by the sine, which is at least 0.01.
             rounding: 1e-6 * (middle.abs().max_element() + 2.0) + 4e-5 * radius,
         }
     }
@@ -227,7 +231,7 @@ impl<F: Fn(usize) -> Vec3> Place<F> {
         Self { body, mesh, first: at(0), at }
     }
 
-    /// Whether a triangle of a mesh may represent the sample.
+    /// Whether triangles of `mesh` may represent the sample.
     #[inline]
     fn may_be_on(&self, mesh: u32) -> bool {
         self.mesh == ANY || self.mesh == mesh
@@ -235,7 +239,8 @@ impl<F: Fn(usize) -> Vec3> Place<F> {
 }
 
 impl TrackedSamples {
-    /// Samples of a mesh with so many triangles. `meshes` has the mesh of each triangle, or is empty.
+    /// Takes the samples, and assigns each midpoint to a triangle that contains it. `triangles` is the number of
+    /// triangles. `meshes` has the mesh of each triangle; empty if all triangles belong to one mesh.
     pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize, meshes: &[u32]) -> Self {
         let mut samples = vec![Vec::new(); triangles];
         let mut homes = vec![NONE; points.len()];
@@ -419,9 +424,9 @@ impl TrackedSamples {
         self.meshes.get(triangle as usize).copied().unwrap_or(ANY)
     }
 
-    /// Finds a triangle of the original `mesh` that is within the limit of the midpoint of `ends` in all poses. Returns
-    /// its index in `below`: `likely` if that triangle qualifies, otherwise the first that does. If there is none, the
-    /// error is the square of the smallest distance.
+    /// Finds an original triangle that belongs to `mesh`. In all poses, it must be within the limit of the midpoint of
+    /// `ends`. Returns its index in `below`: `likely` if that triangle qualifies, otherwise the first that does. If
+    /// there is none, the error is the square of the smallest distance.
     fn behind(&self, points: &Points, mesh: u32, ends: &[u32], likely: usize) -> Result<usize, f32> {
         let place = Place::new(points.common_body(ends), mesh, |pose| middle(points, ends, pose));
         let limits = [self.most.sqrt(), self.most];

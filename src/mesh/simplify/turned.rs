@@ -34,9 +34,9 @@ const LEAST: f64 = 0.0625;
 
 /// Largest squared distance, over all poses, between a point and the planes of its triangles after a collapse. For a
 /// border point, the distance from the new border also counts. `None` if the collapse turns a triangle by more than 75°
-/// or removes its area, in any pose. Triangles that had no area before may turn. `first` is the number of the triangle
-/// to test first. If a triangle turns, `first` is set to its number, because it mostly turns for the next neighbour as
-/// well.
+/// or removes its area, in any pose. Triangles that had no area before may turn. `first` is the index of the triangle
+/// to test first, in the point's list. If a triangle turns, `first` is set to its index, because the same triangle
+/// mostly turns for the next neighbour.
 pub(crate) fn deviation(
     topology: &Topology,
     points: &Points,

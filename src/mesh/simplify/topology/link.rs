@@ -44,8 +44,8 @@ impl Topology {
 }
 
 impl Topology {
-    /// Whether every mesh that meets one of the points around a collapse still meets it afterwards. `meshes` has the
-    /// mesh of each triangle.
+    /// Whether every mesh that has a triangle at a point around a collapse still has one at this point afterwards.
+    /// `meshes` has the mesh of each triangle.
     pub(crate) fn keeps_meshes(&mut self, point: u32, neighbor: u32, meshes: &[u32]) -> bool {
         let vanishing: Vec<(u32, u32)> = (self.ring(point).iter().zip(self.around(point)))
             .filter(|([next, last], _)| *next == neighbor || *last == neighbor)
