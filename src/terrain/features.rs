@@ -49,7 +49,7 @@ impl FeatureFile {
             .map_err(|source| Error::InputFile { path: path.to_owned(), source })
     }
 
-    /// Points as (x, y, height in 1/65536 units), checked against the patch.
+    /// Points as (x, y, height in 1/65536 units), after checking that they lie in the patch and that their heights are in range.
     fn points(&self, config: &TerrainConfig) -> Result<Vec<(i32, i32, i32)>, InputError> {
         let values = &self.precomputed_heights;
         if !values.len().is_multiple_of(3) {
@@ -109,7 +109,7 @@ impl Features {
     /// [`InputError`] as [`Features::new`].
     pub fn add(&mut self, config: &TerrainConfig, file: &FeatureFile) -> Result<(), InputError> {
         let patch = file.patch_coordinates;
-        // A patch that no window can have is refused, because its features would never be used.
+        // Refuse a patch for which no valid window exists: its features would never be used.
         Window { patch, apron: 0 }.validate(config)?;
         let spacing = config.sample_spacing();
         let seamless = config.border == Border::Seamless;
@@ -190,8 +190,8 @@ impl Features {
     }
 
     /// Positions (column, row) of the injected points in the window of each patch, sorted by row. In the modes `wrap` and
-    /// `blend`, samples around a patch come from other patches or from the opposite side of the patch itself, together with their
-    /// features.
+    /// `blend`, samples around a patch are copied from other patches or from the opposite side of the patch itself. Their
+    /// features are copied with them.
     pub(crate) fn in_windows(
         &self,
         config: &TerrainConfig,

@@ -38,7 +38,7 @@ pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputEr
     Ok(places)
 }
 
-/// Advice for errors about fields that are larger than a binding may be.
+/// Advice in errors about fields that exceed the largest allowed storage binding.
 pub(crate) const REMEDY: &str = "split the batch (fewer patches at once), use smaller patches or a smaller apron (fewer \
     iterations of erosion), or compute on the CPU with the functions in the `reference` modules";
 

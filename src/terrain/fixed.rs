@@ -43,8 +43,8 @@ impl Draw {
         Self { key: config.key(), offset: config.offset }
     }
 
-    /// Adds to each `heights[i]` the random offset of the point (x + i·step, y), in world coordinates. `range` is the offsets'
-    /// range in 1/65536 height units.
+    /// Adds a random offset to each height. `heights[i]` belongs to the point (x + i·step, y) in world coordinates. `range` is
+    /// the offsets' range in 1/65536 height units.
     pub(crate) fn add_row(&self, heights: &mut [i32], range: u32, x: u32, step: u32, y: u32) {
         for (chunk, row) in heights.chunks_mut(LANES).enumerate() {
             let start = x.wrapping_add(step.wrapping_mul((chunk * LANES) as u32));
@@ -58,8 +58,8 @@ impl Draw {
         }
     }
 
-    /// Offset of a height, computed from the point's two random words. The constants are deliberately not shared with the shader:
-    /// known heights from independent programs check both copies.
+    /// Random height offset of a point, computed from the point's two random words. The constants are deliberately not shared
+    /// with the shader. Tests compare both copies with heights from independent programs.
     #[inline(always)]
     fn offset_of(&self, range: u32, first: u32, second: u32) -> i32 {
         let uniform = match self.offset {

@@ -69,8 +69,8 @@ impl Generator {
         self.most(gpu, self.recipe.config.patch_size + 2 * self.recipe.apron(margin))
     }
 
-    /// Largest number of windows in one part. With hydraulic erosion, a quarter of [`Fields::most`]: the flow takes four words
-    /// per sample.
+    /// Largest number of windows in one part. With hydraulic erosion, it is a quarter of [`Fields::most`], because the flow takes
+    /// four words per sample.
     fn most(&self, gpu: &Gpu, width: u32) -> usize {
         let windows = Fields::most(gpu, width);
         if self.recipe.hydraulic.is_some() { (windows / 4).max(1) } else { windows }
@@ -112,7 +112,7 @@ impl Generator {
             return Ok(Vec::new());
         }
         if let Border::Blend(_) = self.recipe.config.border {
-            // A patch may read patches of any other part, so all patches are generated at once.
+            // A patch may depend on patches in any other part, so all patches are generated at once.
             let fields = self.by_themselves(gpu, patches, apron).await?;
             progress(patches.len());
             return Ok(fields);
@@ -164,7 +164,7 @@ impl Generator {
         let spacing = config.sample_spacing();
         let finer = 1 << config.levels();
         let base = window.levels(config)[0];
-        // Wherever a window lies relative to the base lattice, this region is one cell larger than the window needs.
+        // The region suffices for every position of the window relative to the base lattice, with one cell to spare.
         let origin = base.map(|span| (span.first - 2) * finer * spacing);
         let width = base.map(|span| (span.width() as i64 + 4) * finer).into_iter().max().unwrap_or(0) as u32;
         features.on_lattice([0, 0], Lattice { origin, width, spacing }, false).len()
@@ -190,7 +190,7 @@ impl Generator {
             start += size;
         }
         let last = self.padded(gpu, apron, &all[start..], &alone).await?;
-        // Free the patches without aprons, which only the last windows read. The following stages need the memory.
+        // The patches without aprons are no longer read. The following stages need their memory.
         drop(alone);
         parts.push(self.finish(gpu, apron, &injected[start..], last).await?);
         Ok(parts)
@@ -262,7 +262,7 @@ impl Generator {
         let capacity = if self.recipe.features.is_empty() { 0 } else { points.max(1) };
         let index = FeatureIndex::new(gpu, &[width], injected.len() as u32, capacity)?;
         index.write(gpu, injected.len() as u32, |_, window| {
-            // The index counts from one point before the window, hence + 1. Despiking does not read the values.
+            // The index counts from one point before the window, hence + 1. Despiking reads no heights, so they are 0.
             injected[window as usize].iter().map(|(column, row)| (column + 1, row + 1, 0)).collect()
         })?;
         Ok(index)

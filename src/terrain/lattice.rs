@@ -47,7 +47,7 @@ pub(crate) fn limited(height: i32) -> i32 {
     height.clamp(-HEIGHT_LIMIT as i32, HEIGHT_LIMIT as i32)
 }
 
-/// World coordinate of the lattice point with this index, modulo 2^32.
+/// World coordinate of the lattice point with index `index`, modulo 2^32.
 pub(crate) fn world(index: i64, spacing: i64) -> u32 {
     (index * spacing) as u32
 }

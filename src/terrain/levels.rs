@@ -84,8 +84,8 @@ impl LevelPass {
     }
 }
 
-/// Numbers of points along an edge of a window, one per level, starting with the base lattice. The numbers suffice for windows at
-/// any position relative to the coarse lattices.
+/// Width of a window in points at each level, starting with the base lattice. These widths suffice for windows at any position
+/// relative to the coarse lattices.
 fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
     let halo = match (config.border, config.interpolation) {
         (Border::Seamless, HeightInterpolation::Linear) => 3,
@@ -100,8 +100,8 @@ fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
     widths
 }
 
-/// Width in points of the rim around a window in which features influence the window. A grid of a feature index already includes
-/// one point of this rim.
+/// Width in points of the rim around a window. Features in the rim also influence the window. A grid of a feature index already
+/// includes one point of this rim.
 fn rim(config: &TerrainConfig) -> u32 {
     match config.interpolation {
         HeightInterpolation::Linear => 1,
@@ -126,7 +126,8 @@ pub struct HeightBuffers<'a> {
 /// with the same configuration, count and apron may share one `HeightScratch`.
 #[derive(Debug, Clone)]
 pub struct HeightScratch {
-    // Dispatches alternate between the two buffers. The last dispatch reads the first buffer, the dispatch before it the second.
+    // Dispatches alternate between the two buffers. The last dispatch reads the first buffer; the dispatch before it reads
+    // the second.
     buffers: [Buffer<i32>; 2],
 }
 
@@ -142,8 +143,8 @@ impl HeightScratch {
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
     }
 
-    /// Number of points in the largest level that each of the two buffers stores. With small patches, coarse levels can be wider
-    /// than fine ones. The base lattice and the output have their own buffers.
+    /// Number of points in the largest level that each of the two buffers stores. The largest level is not always the finest:
+    /// with small patches, coarse levels can be wider. The base lattice and the output have their own buffers.
     fn points(widths: &[u32], count: u32) -> [usize; 2] {
         let mut most = [0; 2];
         for (left, width) in widths[1..].iter().rev().skip(1).enumerate() {
@@ -236,11 +237,11 @@ mod tests {
             let config = TerrainConfig { coarse_levels, ..TerrainConfig::new(size, 1.0, "").expect("valid") };
             HeightScratch::points(&level_widths(&config, apron), 3)
         };
-        // From fine to coarse, the levels before the last are 131, 68, 36, 20, … points wide.
+        // The levels below the output are 131, 68, 36, 20, … points wide, from fine to coarse.
         assert_eq!(points(257, 0, 0), [3 * 131 * 131, 3 * 68 * 68]);
         assert_eq!(points(3, 0, 0), [0, 0], "one dispatch");
         assert_eq!(points(5, 0, 0), [3 * 5 * 5, 0], "two");
-        // For 3 samples with smooth interpolation, the levels before the last are 9, 12, 13, 14, 14, … points wide.
+        // For 3 samples with smooth interpolation, the levels below the output are 9, 12, 13, 14, 14, … points wide.
         let smooth = TerrainConfig {
             interpolation: HeightInterpolation::Smooth,
             coarse_levels: 8,

@@ -73,7 +73,7 @@ impl TerrainTexture {
         let mut edge = TEXTURE_SIZE as usize;
         while edge > 1 {
             edge /= 2;
-            // Each coarser level is the mean of 2 × 2 texels, computed in linear light.
+            // Each texel of a coarser level is the mean of 2 × 2 texels, computed in linear light.
             let mean = |index: usize| {
                 let (x, y) = (2 * (index % edge), 2 * (index / edge));
                 let at = |x: usize, y: usize| level[y * 2 * edge + x];

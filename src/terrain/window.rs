@@ -9,8 +9,8 @@ use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
 /// Largest number of samples by which a window may extend beyond its patch on each side.
 pub const MAX_APRON: u32 = 4096;
 
-/// With smooth interpolation: width in points of the rim around a window in which features influence the window. It applies at
-/// every level but the first.
+/// Width in points of the rim around a window with smooth interpolation, at every level but the base lattice. Features in the rim
+/// also influence the window.
 pub(crate) const SMOOTH_RIM: u32 = 3;
 
 /// A patch and the samples around it: (patchSize + 2·apron)² samples.

@@ -14,7 +14,7 @@ pub use pass::{BlendBuffers, BlendPass};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum WeightMode {
-    /// Weights are divided by their sum. Where all weights are 0, the nearest zone gets weight 1.
+    /// Weights are divided by their sum. Where all weights are 0, the zone nearest in height gets weight 1.
     #[default]
     Normalized,
     /// Thesis B's rule: colours are multiplied by the weights and added, without normalization.
@@ -22,7 +22,7 @@ pub enum WeightMode {
 }
 
 impl WeightMode {
-    /// Value of the shaders' `additive` for this mode: 1 for `Additive`, otherwise 0.
+    /// Value of the shader parameter `additive` for this mode: 1 for `Additive`, otherwise 0.
     #[cfg(feature = "gpu")]
     pub(crate) fn code(self) -> u32 {
         u32::from(self == Self::Additive)
@@ -66,10 +66,10 @@ impl Shading {
 ///
 /// Positions in textures and the cells of the variation are integers, and all other computations are continuous. A weight has an
 /// error of at most 2^-16. The height contributes about 2^-23 · (|height| + |max|) / (max − min). The slope contributes 115 times
-/// the steepness's error of 2^-20, for transitions at least one degree wide. The error of a colour is the error of a weight,
-/// divided by the sum of weights, plus 1/100 level from the polynomial for the sRGB curve. If the sum of weights is at least
-/// [`MIN_TOTAL`], the error of a colour is far below one level. Rounding to 8 bits may still go either way.
+/// the steepness's error of 2^-20, for transitions at least one degree wide. The error of a colour has two parts: the error of a
+/// weight divided by the sum of weights, and 1/100 level from the polynomial for the sRGB curve. If the sum of weights is at
+/// least [`MIN_TOTAL`], the error of a colour is far below one level. Rounding to 8 bits may still go either way.
 pub const MAP_BOUND: u8 = 1;
 
-/// Smallest sum of weights for which [`MAP_BOUND`] holds; it also holds if the sum is exactly 0.
+/// Smallest sum of weights for which [`MAP_BOUND`] holds. The bound also holds for a sum of exactly 0.
 pub const MIN_TOTAL: f32 = 1.0 / 64.0;

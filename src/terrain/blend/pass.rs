@@ -23,7 +23,8 @@ pub struct BlendBuffers<'a> {
     pub windows: &'a Fields,
     /// Read: texture position of each window's first inner sample ([`Cover::place`]), in 2^-22 tiles.
     pub places: &'a Buffer<[u32; 2]>,
-    /// Written: one sRGB pixel per sample, without each window's outermost ring. RGBA with 8 bits each, red in the lowest byte.
+    /// Written: one sRGB pixel per sample inside each window's outermost ring. A pixel is RGBA with 8 bits per channel, red in
+    /// the lowest byte.
     pub pixels: &'a Buffer<u32>,
 }
 

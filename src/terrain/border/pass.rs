@@ -30,7 +30,7 @@ impl BorderPass {
     ///
     /// # Errors
     /// [`InputError`] as [`super::waves`], for a width that is 0 or not below a patch's size, for more entries in `neighbours`
-    /// than patches, and for parts of different widths or with heights that are too short; [`GpuError`].
+    /// than patches, for parts of different widths, and for buffers that are too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -58,8 +58,8 @@ impl BorderPass {
             let params = BorderParams { size, width, start: starts[*part] };
             starts[*part] += count;
             let Entries { neighbours, order } = &entries[*part];
-            // A buffer that is bound for writing cannot be bound again for reading. `order` is bound as `others` instead. The
-            // kernel `within` never reads `others`.
+            // A buffer that is bound for writing cannot also be bound for reading. The kernel `within` never reads `others`, so
+            // `order` serves as a placeholder.
             let (kernel, others) = if source == part {
                 (&self.within, order.slice().cast())
             } else {

@@ -313,8 +313,8 @@ impl TerrainConfig {
     }
 
     /// Range of the random offsets of edge points at level `level` with smooth interpolation, in 1/65536 height units. It is the
-    /// level's rounded range times 2^(−roughness / 2), which is the reduction of half a level (Saupe, "Algorithms for random
-    /// fractals", in The Science of Fractal Images, 1988).
+    /// level's rounded range times 2^(−roughness / 2), the factor by which the range shrinks over half a level (Saupe,
+    /// "Algorithms for random fractals", in The Science of Fractal Images, 1988).
     pub fn edge_range(&self, level: u32) -> u32 {
         (self.range(level) * libm::exp2(-self.roughness / 2.0)).round_ties_even() as u32
     }

@@ -11,7 +11,7 @@ use crate::InputError;
 /// Largest number of zones in a configuration.
 pub const MAX_ZONES: usize = 32;
 
-/// Largest number of times that a zone's texture repeats within one texture tile.
+/// Largest number of times that a zone's texture repeats along the edge of one texture tile.
 pub const MAX_REPEATS: u32 = 16;
 
 /// Source of a zone's texture.
@@ -118,8 +118,8 @@ pub struct Zone {
     pub min: f64,
     /// Upper end of the range, in height units; above `min`.
     pub max: f64,
-    /// Texture: `"sand"`, `"grass"`, `"hill"`, `"snow"`, `"soil"`, `"strata"`, `"scree"` or the path of an image. By default, the
-    /// first four names are used in order of the zone's position in the list; later zones get `"snow"`.
+    /// Texture: `"sand"`, `"grass"`, `"hill"`, `"snow"`, `"soil"`, `"strata"`, `"scree"` or the path of an image. Default: the
+    /// first four zones get the first four names, in order; later zones get `"snow"`.
     #[serde(default, deserialize_with = "texture")]
     pub texture: Option<ZoneTexture>,
     /// Slopes on which the zone lies. Default: all slopes.

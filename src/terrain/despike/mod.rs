@@ -11,7 +11,7 @@ pub mod reference;
 pub use pass::{DespikeBuffers, DespikePass};
 
 /// Removal of spikes. A sample that differs from the mean of its four neighbours by more than `threshold` is replaced by this
-/// mean. Injected points stay unchanged. The result at a sample depends only on samples at most one sample away.
+/// mean. Injected points stay unchanged. The result at a sample depends only on the sample and these neighbours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Despike {
     /// Largest allowed difference τ from the neighbours' mean, in height units, 0 to 16383.

@@ -36,7 +36,7 @@ impl FeatureIndex {
                     words_per_window: words_per_row * (width + 2),
                     start,
                 };
-                // Wrapping is harmless here: kernels compiled without features never read these words.
+                // `start` can wrap only if `capacity` is 0. Kernels compiled without features never read these words.
                 start = start.wrapping_add(grid.words_per_window.wrapping_mul(windows));
                 grid
             })
@@ -49,8 +49,8 @@ impl FeatureIndex {
         })
     }
 
-    /// Replaces all features. `points(grid, window)` returns (column, row, height), sorted by row and then column. Columns and
-    /// rows count from one point before the window's first point.
+    /// Replaces all features. `points(grid, window)` returns (column, row, height), sorted by row and then column. Column 0
+    /// and row 0 lie one point before the window's first point.
     ///
     /// # Errors
     /// [`GpuError::Limit`] when there are more features than the capacity.

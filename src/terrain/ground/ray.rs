@@ -114,8 +114,8 @@ mod tests {
     use crate::terrain::field::field;
     use crate::terrain::recipe::Recipe;
 
-    /// Every ray hits the same triangle as a search through all triangles, and the ground's height at the hit equals the hit's
-    /// height.
+    /// Every ray hits the triangle that a search through all triangles finds. The hit's height equals the ground's height at the
+    /// hit's position.
     #[test]
     fn rays_hit_the_triangles_that_are_drawn() {
         let config = TerrainConfig::new(33, 6.0, "rays").expect("valid");

@@ -52,8 +52,8 @@ pub struct Hydraulic {
     /// Sediment that water can carry per unit of discharge, at a slope of 1; 0 to 1024. Default 100.
     pub capacity: f64,
     /// Discharge below which water carries no sediment, in multiples of the rain on one sample per cycle; 0 to 65536. Larger
-    /// values make valleys begin further from the watershed. The threshold also limits the water that spreads to each neighbour
-    /// independently of the slope. Default 2.
+    /// values make valleys begin further from the watershed. A small part of the water spreads to each neighbour, whatever the
+    /// slope. The threshold also limits this part. Default 2.
     pub threshold: f64,
     /// Rate of erosion, 0 to 1: if water carries less sediment than it could, this fraction of the difference leaves the ground
     /// per cycle. Default 0.01.

@@ -27,9 +27,8 @@ impl PadPass {
     /// Indices in `surrounds` count patches across all parts.
     ///
     /// # Errors
-    /// [`InputError`] when the apron is not smaller than a patch, when an entry of `surrounds` lacks its own patch or names a
-    /// patch beyond `parts`, when parts have different widths or heights that are too short, or when `windows` is too short;
-    /// [`GpuError`].
+    /// [`InputError`] when the apron is not smaller than a patch, when an entry of `surrounds` lacks the patch in the middle or
+    /// names a patch beyond `parts`, when parts have different widths, or when a buffer is too short; [`GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -77,7 +76,7 @@ fn tiles_in(part: usize, tiles: &[Option<Place>]) -> Option<Vec<u32>> {
     })
 }
 
-/// Checks that every entry of `surrounds` has its own patch, and that all indices are below `count`.
+/// Checks that every entry of `surrounds` has a patch in the middle, and that all indices are below `count`.
 fn check_surrounds(surrounds: &[Surround], count: usize) -> Result<(), InputError> {
     for (index, around) in surrounds.iter().enumerate() {
         if around[4].is_none() {

@@ -113,8 +113,8 @@ impl TerrainConfig {
     /// Reads a configuration from thesis B's JSON. Use [`Recipe::from_json`] for text that includes erosion.
     ///
     /// # Errors
-    /// [`InputError`] for text that is not valid JSON, for unknown or missing keys, for values out of bounds, and for keys of
-    /// erosion.
+    /// [`InputError`] for text that is not valid JSON, for unknown or missing keys, for values out of bounds, and for the
+    /// keys of erosion (`thermal`, `hydraulic`, `thermalAfter`).
     pub fn from_json(text: &str) -> Result<Self, InputError> {
         let Recipe { config, thermal, hydraulic, thermal_after, .. } = Recipe::from_json(text)?;
         let given = [
@@ -132,9 +132,9 @@ impl TerrainConfig {
 }
 
 impl Recipe {
-    /// Reads a recipe from JSON: the keys of a configuration, with erosion beside them. `thermal` and `thermalAfter` are objects
-    /// with `iterations` and `talus`. `hydraulic` is an object with the fields of [`Hydraulic`]. Missing optional keys get their
-    /// defaults.
+    /// Reads a recipe from a JSON object with the keys of a configuration and optional keys for erosion. `thermal` and
+    /// `thermalAfter` are objects with `iterations` and `talus`. `hydraulic` is an object with the fields of [`Hydraulic`].
+    /// Missing optional keys get their defaults.
     ///
     /// # Errors
     /// [`InputError`] for text that is not valid JSON, for unknown or missing keys, and for values out of bounds.

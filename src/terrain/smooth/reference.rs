@@ -1,5 +1,5 @@
-//! Heights of a window onto the smooth plane: the CPU reference of `kernels/terrain/smooth.wgsl`. Each level is computed for the
-//! whole window at once.
+//! Heights of a window onto the smooth surface: the CPU reference of `kernels/terrain/smooth.wgsl`. Each level is computed for
+//! the whole window at once.
 
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;

@@ -87,7 +87,7 @@ fn snow() -> Vec<u8> {
     shaded(&heights, heights.iter().zip(&sparkles).map(color).collect(), 0.35)
 }
 
-/// Layers of rock with uneven thickness and hardness, broken into blocks. The top of the texture is up.
+/// Layers of rock with uneven thickness and hardness, broken into blocks. The top edge of the texture is the upper side.
 fn strata() -> Vec<u8> {
     let (heights, marks) = apart(made(|[u, v]| {
         let fold = 0.02 * octaves(151, [3, 3], 3, 0.5, [u, v]);

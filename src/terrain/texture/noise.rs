@@ -65,7 +65,8 @@ pub fn ridges(key: u32, period: u32, count: u32, at: [f32; 2]) -> f32 {
     sum / total
 }
 
-/// The cell of Worley noise that contains a given point. Every lattice square has one random feature point.
+/// The cell of Worley noise that contains a given point. Every lattice square has one random feature point. All points with the
+/// same nearest feature point form a cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
     /// Distances to the nearest and the second nearest feature point, in units of a lattice square's edge.

@@ -17,15 +17,16 @@ pub fn steepness(normal: [f32; 3]) -> f32 {
     (x * x + z * z).sqrt() / (1.0 + y)
 }
 
-/// Weight of a zone at a height and a steepness, 0 to 1 (B equation 3.6). The factor for height is 1 at `max` and falls linearly
-/// to 0 at `max` ± (`max` − `min`). It is multiplied by the factors of the two transitions of the zone's slope range.
+/// Weight of a zone at a height and a steepness, 0 to 1 (B equation 3.6). It is the product of three factors: one for the
+/// height, and one for each end of the zone's slope range. The factor for the height is 1 at `max` and falls linearly to 0 at
+/// `max` ± (`max` − `min`).
 pub fn zone_weight(zone: &ShaderZone, height: f32, steep: f32) -> f32 {
     let range = zone.max - zone.min;
     let line = |line: [f32; 2]| (line[0] * steep + line[1]).clamp(0.0, 1.0);
     ((range - (height - zone.max).abs()) / range).max(0.0) * (line(zone.rise) * line(zone.fall))
 }
 
-/// Factor by which a texel's height, 0 to 1, changes the weight of its zone; 0 to 1.
+/// Factor by which the weight of a zone is multiplied, 0 to 1. `texel_height` is the height in the zone's texture, 0 to 1.
 fn prominence(zone: &ShaderZone, texel_height: f32) -> f32 {
     let squared = (1.0 + zone.height_blend * (0.9375 * texel_height - 0.9375)).powi(2);
     squared * squared
@@ -59,7 +60,7 @@ pub fn zone_fractions(
 }
 
 /// Colour map of a window with `width` samples per row, without the outermost ring of samples. Pixels are sRGB RGBA with 8 bits
-/// each, red in the lowest byte. `place` is the texture position of the first inner sample ([`Cover::place`]).
+/// per channel, red in the lowest byte. `place` is the texture position of the first inner sample ([`Cover::place`]).
 pub fn blend(window: &[i32], width: usize, cover: &Cover, shading: &Shading, place: [u32; 2]) -> Vec<u32> {
     let at = |x: usize, y: usize| window[y * width + x];
     let zones: Vec<ShaderZone> = cover.zones.iter().map(|map_zone| map_zone.zone).collect();

@@ -18,7 +18,7 @@ pub fn tiles_of(cover: &Cover, place: [u32; 2], [columns, rows]: [usize; 2], hei
     [east, ((i64::from(height) * i64::from(per_unit)) >> 16) as u32, south]
 }
 
-/// Indices of the texels of a zone's texture at a texture position, one index per projection plane.
+/// Indices into [`Cover::texels`] for a zone at a texture position, one index per projection plane.
 pub fn texel_indices(cover: &Cover, zone: &MapZone, [east, up, south]: [u32; 3]) -> Vec<usize> {
     let index = |at: [u32; 2]| {
         let edge = 1 << zone.edge_log2;
