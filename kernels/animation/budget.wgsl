@@ -53,8 +53,8 @@ struct BudgetParams {
 // Out: the bones that are sampled, one bit per bone. A second section in the same layout is for bones that are sampled ahead.
 // All its bits become 0.
 @group(0) @binding(6) var<storage, read_write> bits: array<u32>;
-// Ranks of bones, two per word and 16 words for each word of bits. Then one bit per bone, set for bones of the lowest rank that
-// is served.
+// Ranks of bones: for each word of `bits`, 16 words with two ranks each. Then one bit per bone, set for bones of the lowest
+// rank that is served.
 @group(0) @binding(7) var<storage, read_write> ranks: array<u32>;
 // Number of bones of each rank; then the values at the indices FORCED, LOWEST and ROOM. From TIES on: per instance, the number
 // of bones of the lowest served rank.

@@ -32,14 +32,14 @@ struct ClipClockParams {
 // Weights of the layers above the base layer, layer by layer, one per instance.
 @group(0) @binding(6) var<storage, read> layer_weights: array<f32>;
 // State of each instance in the last frame. x: clip + 1, with BLENDED if layers were above the clip; 0 if no pose is stored. y:
-// hash of the clips of these layers. z: time inside the clip. w: look-ahead time. Times are f32 as bits.
+// hash of the clips of these layers. z: time inside the clip. w: look-ahead time inside the clip. Times are f32 as bits.
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
 // Out: clip clock of each instance.
 @group(0) @binding(8) var<storage, read_write> clip_clocks: array<ClipClock>;
 
 // Flag in the first word of `history`: layers were blended over the clip.
 const BLENDED: u32 = 0x80000000u;
-// Factor of the hash of clips above the base layer.
+// Factor in the hash of the clips above the base layer (`clips_above`).
 const CLIP_HASH_FACTOR: u32 = 31u;
 
 // Clip index that no instance has.
@@ -58,7 +58,7 @@ fn clips_above(instance: u32, base: u32) -> u32 {
     return clips;
 }
 
-// Fraction of a cursor in fixed point, in 1/FRACTION_ONE.
+// Fraction of a cursor in fixed point, in units of 1/FRACTION_ONE.
 fn whole_fraction(cursor: KeyframeCursor) -> u32 {
     return u32(clamp(cursor.fraction, 0.0, 1.0) * f32(FRACTION_ONE));
 }

@@ -42,7 +42,7 @@ struct CompactParams {
 @group(0) @binding(2) var<storage, read> slots: array<Slot>;
 // Updated bones, one bit per slot of each instance. The bits accumulate over frames until all readers have processed them.
 @group(0) @binding(3) var<storage, read_write> updated_bones: array<u32>;
-// Per instance. In: the number of active pairs. Out, after SCAN: the number of active pairs of all instances before it.
+// Per instance. In: the number of active pairs. Out, after SCAN: the number of active pairs of all preceding instances.
 @group(0) @binding(4) var<storage, read_write> counts: array<u32>;
 // Out: active pairs, instance * bones + bone, with PAIR_AHEAD if the bone is sampled ahead.
 @group(0) @binding(5) var<storage, read_write> pairs: array<u32>;

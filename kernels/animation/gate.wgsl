@@ -12,7 +12,7 @@ override MODE: u32 = 0;
 const OFF = 0u;
 // Mode: each bone skips one update per period. The period depends on the bone's priority and Ω.
 const SKIP_PERIOD = 1u;
-// Mode: a fraction Ω of frames samples all bones of an instance; other frames sample none.
+// Mode: in a fraction Ω of the frames, all bones of an instance are sampled; in the other frames, none are.
 const UNIFORM = 2u;
 // Mode: each bone is sampled with probability Ω.
 const RANDOM = 3u;
@@ -94,7 +94,7 @@ fn by_priority(instance: u32, first: u32, candidates: u32, omega: u32, clip_cloc
         let four = table[clip_clock.row * params.stride + slot / 4u];
         let two = select(four.x, four.y, (slot & 2u) != 0u);
         let priority = (two >> (16u * (slot & 1u))) & 0xffffu;
-        // The priority times Ω, in 1/65536; then the period at that level.
+        // The level is the priority times Ω, in 1/65536. The period is the longest period times the level.
         let level = (priority * omega) >> 16u;
         let whole = (params.period >> 16u) * level;
         let period = whole + (((params.period & 0xffffu) * level) >> 16u);
@@ -130,11 +130,11 @@ fn at_random(instance: u32, first: u32, candidates: u32, omega: u32) -> u32 {
 // Exclusive upper bound of the allowed motion, in units of the table.
 const EVERYTHING: u32 = 1u << 30u;
 
-// In a bone's encoded error budget: the lowest bit of the fraction of the remaining budget that the bone may use. The fraction
-// is in 1/FRACTION_ONE.
+// Lowest bit of a field in a bone's encoded error budget. The field is the fraction of the remaining budget that the bone may
+// use, in 1/FRACTION_ONE.
 const BUDGET_FRACTION_SHIFT: u32 = 8u;
-// In a bone's encoded error budget: the mask of the exponent of the quantization slack. The slack is 2^(exponent − 1), or 0 for
-// exponent 0. It is added to missed motion.
+// Mask of a field in a bone's encoded error budget. The field is the exponent of the quantization slack, which is added to
+// missed motion. The slack is 2^(exponent − 1), or 0 for exponent 0.
 const BUDGET_SLACK_MASK: u32 = 31u;
 // Flag in a bone's encoded error budget: the bone above is not the previous one in the order.
 const STARTS: u32 = 32u;
@@ -169,9 +169,9 @@ struct AccumulatedMotion {
 // the rest. A bone that missed more is sampled, and the bones below get all of the remaining budget.
 //
 // A sampled bone is sampled ahead if its motion until the look-ahead time is also within its fraction. In this frame, the bone
-// is then off by this motion, which is subtracted from the budget. In return, the bone can stay unsampled for twice as long.
-// Bones in `asked` are always sampled. If nothing may be missed, all bones are sampled. `left` is the budget that the previous
-// bone left.
+// is off by this motion, which is subtracted from the budget. In return, the bone can stay unsampled for twice as long. Bones
+// in `asked` are always sampled. If nothing may be missed, all bones are sampled. `left` is the budget that the previous bone
+// left.
 fn by_motion(instance: u32, first: u32, candidates: u32, asked: u32, accumulated: AccumulatedMotion, left: ptr<function, u32>) -> Chosen {
     let forced = asked | select(0u, candidates, accumulated.allowed == 0u);
     let row = accumulated.clip_clock.row * params.stride + first;

@@ -1,6 +1,6 @@
 // Keyframe cursors of instances: for each timeline of an instance's clip, the key before the current time and the fraction of
-// the interval to the next key. A thread finds one cursor. With COMPACTED, only listed instances are handled, with all their
-// layers. With COMPACTED, the kernel also finds the base layer's cursors at the look-ahead time.
+// the interval to the next key. A thread finds one cursor. With COMPACTED, the kernel handles only listed instances, with all
+// their layers. It also finds the base layer's cursors at the look-ahead time.
 import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::instance::AnimationInstance;
@@ -29,8 +29,8 @@ struct KeyframeCursorParams {
 @group(0) @binding(2) var<storage, read> clips: array<ClipEntry>;
 // Timelines of all clips.
 @group(0) @binding(3) var<storage, read> timelines: array<Timeline>;
-// Out: the cursors of all layers, then the base layer's cursors at the look-ahead time. (Binding 4 has the key times: module
-// `animation`.)
+// Binding 4 holds the key times: `times` in wgsl/animation/timeline.wgsl.
+// Out: the cursors of all layers, then the base layer's cursors at the look-ahead time.
 @group(0) @binding(5) var<storage, read_write> cursors: array<KeyframeCursor>;
 // Indices of the listed instances.
 @group(0) @binding(6) var<storage, read> updated_instances: array<u32>;

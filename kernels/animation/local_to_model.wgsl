@@ -1,6 +1,6 @@
 // Concatenates local transforms into model matrices. A thread walks one chain of one instance and keeps the parent's matrix in
-// registers. A dispatch handles the chains of one level of the hierarchy, after their parents. With COMPACTED, only updated
-// slots of listed instances are walked. An update of a bone includes all bones below it.
+// registers. A dispatch handles the chains of one level of the hierarchy. Earlier dispatches have handled the parents of these
+// chains. With COMPACTED, only updated slots of listed instances are walked. An update of a bone includes all bones below it.
 import package::wgsl::affine::product_row;
 import package::wgsl::animation::order::{CONTINUES, Chain, NO_PARENT, Slot};
 

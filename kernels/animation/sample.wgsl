@@ -50,8 +50,8 @@ struct SampleParams {
 // with one value per bone.
 @group(0) @binding(8) var<storage, read> layer_weights: array<f32>;
 
-// Squared length below which a quaternion that a spline interpolates has no direction. The rotation is then the value of the
-// key before the position.
+// Smallest squared length at which a quaternion from a spline has a direction. For a shorter quaternion, the rotation is the
+// value of the key before the position.
 const VANISHING: f32 = 1e-12;
 
 // Position between two values of a track.
@@ -147,8 +147,8 @@ struct Local {
     scaled: vec3<f32>,
 }
 
-// Local transform of a bone in the clip of one layer. `slot` is layer * instances + instance. `cursor_slot` equals `slot`; for
-// the base layer at the look-ahead time, it is layers * instances + instance.
+// Local transform of a bone in the clip of one layer. `slot` is layer * instances + instance. `cursor_slot` selects the
+// cursors. For the base layer at the look-ahead time, it is layers * instances + instance; otherwise it equals `slot`.
 fn local_at(slot: u32, bone: u32, cursor_slot: u32) -> Local {
     let track = 3u * (instances[slot].clip * params.bones + bone);
     let first_cursor = cursor_slot * params.timelines;

@@ -1,4 +1,4 @@
-// Copies 16 bytes per thread. Its time is the cost of moving bytes, against which other kernels are measured.
+// Copies 16 bytes per thread. The kernel's time is the cost of moving bytes alone. Other kernels are compared with it.
 
 // Parameters of the kernel `baseline/copy`.
 struct CopyParams {

@@ -1,4 +1,5 @@
-// Loads texels and adds them up, to measure the cost of texel loads alone. Each thread walks along a row of the texture.
+// Parameters of the kernel `baseline/loads`. The kernel loads texels and adds them up, to measure the cost of texel loads
+// alone. Each thread walks along a row of the texture.
 struct LoadsParams {
     // Number of threads along x and y.
     threads: vec2<u32>,

@@ -46,8 +46,8 @@ struct AssignParams {
 // length: instances
 @group(0) @binding(5) var<storage, read> finest: array<u32>;
 
-// Influence fade, 0 to 1, that stays within a displacement `within`, in model units. It is 1 if a complete fade displaces
-// nothing.
+// Largest influence fade, 0 to 1, that displaces vertices by at most `influence_fraction` times `within`. `within` is the
+// allowed displacement in model units. The result is 1 if a complete fade displaces nothing.
 fn fade_within(within: f32) -> f32 {
     let faded = floor(FADE_STEPS * min(params.influence_fraction * within / params.stray, 1.0)) / FADE_STEPS;
     return select(faded, 1.0, params.stray <= 0.0);

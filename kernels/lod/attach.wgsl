@@ -1,6 +1,6 @@
 // Placements of meshes that are attached to bones, in one view. A thread multiplies the transform of a character, the model
-// matrix of the bone and the mesh's own offset. If no view of the frame sees the character, its bones are outdated. The mesh
-// then becomes a point, which draws nothing. If the scene keeps its last frame, the thread also writes the transform that the
+// matrix of the bone and the mesh's own offset. If no view of the frame sees the character, its bones are outdated, and the
+// mesh becomes a point, which draws nothing. If the scene keeps its last frame, the thread also writes the transform that the
 // mesh had in the last frame.
 import package::wgsl::affine::product_row;
 import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};

@@ -1,7 +1,7 @@
 // Finds how much the levels of detail of a view must be coarsened so that its triangles fit a budget (thesis A section 6.3). Each
 // coarser level of an instance saves triangles once the factor of the instance's metric is large enough. A histogram sums these
-// savings over the logarithm of the factor, rank by rank. It gives the bin of the smallest sufficient factor. A second
-// histogram divides this bin into parts. All views that share a budget add to these two histograms, stage by stage.
+// savings over the logarithm of the factor, rank by rank. The histogram gives the bin of the smallest sufficient factor. A
+// second histogram divides this bin into parts. All views that share a budget add to these two histograms, stage by stage.
 import package::wgsl::lod::budget_state::BudgetState;
 import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, NO_RANK, OBJECT_LEVELS, RANKS, UNSEEN_METRIC, decision_level, decision_next, decision_steps, metric_bits};
 import package::wgsl::lod::transition::{held_level, is_faded_out, level_within, threshold_of, transition_decision};
@@ -95,7 +95,7 @@ fn triangles_of(object: LodObject, level: u32) -> u32 {
     return object.triangles[level >> 2u][level & 3u];
 }
 
-// Index of the part of a rank at and beyond which `factor_at` is at least `factor`.
+// Index of a part of a rank. For this part and all later parts, `factor_at` is at least `factor`.
 fn part_of(factor: f32) -> u32 {
     return u32(ceil(max(log2(factor), 0.0) * OCTAVE)) + ROUNDED_PARTS;
 }
@@ -226,7 +226,8 @@ fn find_bin(lane: u32) {
     }
 }
 
-// Finds the part of the bin whose savings bring the triangles within the limit, writes the state, and clears the parts.
+// Finds the part, within the found bin, whose savings bring the triangles within the limit. Writes the state and clears the
+// parts.
 fn find_part(lane: u32) {
     let length = BIN_PARTS / 256u;
     var saved = 0u;

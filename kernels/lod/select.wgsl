@@ -21,8 +21,8 @@ const MAX_MOTION: f32 = 4.0;
 // The instances of all blocks.
 // length: BLOCK * blocks
 @group(0) @binding(3) var<storage, read> instances: array<SceneInstance>;
-// Out, per instance: the smallest displacement, in model units, that is allowed by a view of the frame that sees the instance.
-// `UNSEEN_ALLOWED` if no view sees the instance.
+// Out, per instance: the displacement that all views of the frame allow, in model units. Only views that see the instance
+// count. `UNSEEN_ALLOWED` if no view sees the instance.
 // length: BLOCK * blocks
 @group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
 // Out, per instance: the metric word; `UNSEEN_METRIC` if the view does not see the instance.
@@ -81,7 +81,7 @@ fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
     return 1.0 + object.motion * min(speed, MAX_MOTION) + object.periphery * min(length(now), 1.0);
 }
 
-// Result of a view's cameras for a visible instance.
+// Allowed displacement and metric of a visible instance, over all cameras of a view.
 struct Seen {
     // Smallest displacement that any of the view's cameras allows, in model units.
     allowed: f32,
@@ -89,8 +89,8 @@ struct Seen {
     metric: f32,
 }
 
-// Result of the view's cameras for a visible instance. Driver workaround: where uniforms alone decide loops and branches,
-// lavapipe compiles the kernel again in each submission. The loop therefore also depends on `seen`.
+// Allowed displacement and metric of a visible instance, over all cameras of the view. Driver workaround: where uniforms alone
+// decide loops and branches, lavapipe compiles the kernel again in each submission. The loop therefore also depends on `seen`.
 fn seen_by(object: LodObject, placed: Placed, scale: f32) -> Seen {
     let cameras = min(view.camera_count, VIEW_CAMERAS);
     var seen = Seen(MAX_ALLOWED, MAX_METRIC);

@@ -1,5 +1,5 @@
 // Sorted draws, for objects that are drawn instance by instance. A thread writes the draw of one part of one instance, and the
-// draw's list entry. The level of detail is the level at which the view sees the instance.
+// draw's list entry. The level of detail comes from the view's decision word for the instance.
 import package::wgsl::lod::object::{LodObject, SceneDraw};
 import package::wgsl::lod::transition::sorted_entry;
 

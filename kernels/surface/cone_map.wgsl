@@ -84,7 +84,7 @@ fn leaf_radius(corners: vec4<f32>, offset: vec2<i32>, own: f32) -> f32 {
 fn rises(corners: vec4<f32>, offset: vec2<i32>) -> bool {
     let along_x = vec2<f32>(corners.y - corners.x, corners.w - corners.z);
     let along_y = vec2<f32>(corners.z - corners.x, corners.w - corners.y);
-    // Path directions lie within one cell of the offset; a bilinear form has its minimum at a corner.
+    // Each component of a path's direction is within 1 of the offset. A bilinear form has its minimum at a corner.
     let low = vec2<f32>(offset - 1);
     let high = vec2<f32>(offset + 1);
     let x = min(min(along_x.x * low.x, along_x.x * high.x), min(along_x.y * low.x, along_x.y * high.x));
@@ -92,8 +92,8 @@ fn rises(corners: vec4<f32>, offset: vec2<i32>) -> bool {
     return x + y >= 0.0;
 }
 
-// Narrows `radius` by the nodes of one periodic image of the tile. `cell` is counted from that image, and `own` is the height
-// of the cell's highest corner.
+// Radius of a cell's cone, reduced from `radius` where nodes of one periodic image of the tile require it. `cell` is counted
+// from that image, and `own` is the height of the cell's highest corner.
 fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
     let cells = vec2<i32>(params.cells);
     let top = surface_levels(params.cells) - 1u;
@@ -136,7 +136,8 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
             node = nearest_child(node, cell, level);
             continue;
         }
-        // The next child of the parent; after the last child, the next child of the parent's parent, and so on.
+        // The next node is the next child of the parent. After the last child, it is the next child of the parent's parent, and
+        // so on.
         let last_children = countTrailingZeros(~(orders >> (2u * level))) >> 1u;
         node = node >> vec2<u32>(last_children);
         level += last_children;

@@ -32,11 +32,12 @@ const LEAST_BITS: u32 = 0x0d800000u;
 // Bits of the f32 2^100. A normal with a larger component counts as a vector without direction.
 const LARGEST_BITS: u32 = 0x71800000u;
 // A triangle contributes nothing if its area, its tangent or its area in uv is no larger than this. Before the measurement, the
-// triangle is scaled to a box of edge 1, and its uv coordinates to a square of edge 1, u and v separately. Errors of f32 are at
-// most a sixteenth of this value: they rotate a tangent of this length by less than four degrees.
+// triangle is scaled to a box of edge 1, and its uv coordinates to a square of edge 1, u and v separately. Rounding errors are
+// at most a sixteenth of this value. They rotate a tangent of this length by less than four degrees.
 const DEGENERATE: f32 = 1.0 / 16384.0;
-// A sum of tangents counts as 0 if its component orthogonal to the normal is no longer than this fraction of the sum of
-// weights. The handedness is -1 if the sum of handedness values is below minus this fraction of the sum of weights.
+// Threshold of two sums at a vertex, as a fraction of the sum of weights. A sum of tangents counts as 0 if its component
+// orthogonal to the normal is no longer than the threshold. The handedness is -1 if the sum of handedness values is below the
+// negative threshold.
 const VANISHING: f32 = 1.0 / 64.0;
 
 // Contribution of one triangle to the tangent of a vertex.

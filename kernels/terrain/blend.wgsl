@@ -1,5 +1,5 @@
-// Colour map of patches, seen from above, with one sRGB pixel per sample: the textures of the ground, blended by zones (B
-// equations 3.6 and 3.7), with hill-shading. The kernel reads windows that extend one sample beyond the patch.
+// Colour map of patches, seen from above, with one sRGB pixel per sample: the textures of the ground, blended by zones (thesis
+// B equations 3.6 and 3.7), with hill-shading. The kernel reads windows that extend one sample beyond the patch.
 import package::wgsl::terrain::fixed::HEIGHT_ONE;
 import package::wgsl::terrain::light::{Light, lit};
 import package::wgsl::terrain::slope::slope_normal;
@@ -79,7 +79,7 @@ fn texel_at(index: u32) -> vec4<f32> {
     return vec4<f32>(unpack2x16unorm(texel.x), unpack2x16unorm(texel.y));
 }
 
-// sRGB transfer function, with an error of at most 1/100 of a level of 255. A minimax polynomial in the fourth root of x
+// sRGB transfer function, with an error of at most 1/100 of an 8-bit step. A minimax polynomial in the fourth root of x
 // replaces 1.055 x^(1/2.4) − 0.055. Its largest error from 0.0031308 to 1 is 3.4e-5. On software adapters, a power function
 // takes six times as long.
 fn srgb(linear: vec3<f32>) -> vec3<f32> {

@@ -1,5 +1,5 @@
 // Removes spikes: every point that differs from the mean of its four neighbours by more than the threshold is replaced by that
-// mean (B figure 5.10). Injected points are left unchanged. Each window loses its outermost ring of samples.
+// mean (thesis B figure 5.10). Injected points are left unchanged. Each window loses its outermost ring of samples.
 import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 import package::wgsl::terrain::fixed::mean_of_four;
 import package::wgsl::terrain::features::{FEATURES, FEATURES_NONE, FeatureGrid, has_feature};

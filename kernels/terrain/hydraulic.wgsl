@@ -1,8 +1,8 @@
 // A cycle of hydraulic erosion of windows (virtual pipes after Mei, Decaudin and Hu 2007, in integers). Each sample has ground,
-// water, and suspended sediment. It also has shares: the fractions of water and sediment that leave for its four neighbours. A
-// cycle moves these shares, lets ground creep and banks slide, erodes or deposits, evaporates and rains. The next shares are
-// computed from the surfaces before the cycle. All transport between two samples is computed from the old state alone. Each
-// window loses its outermost ring of samples.
+// water, and suspended sediment. Each sample also has shares: the fractions of water and sediment that leave for its four
+// neighbours. A cycle moves these shares, lets ground creep and banks slide, erodes or deposits, evaporates and rains. The next
+// shares are computed from the surfaces before the cycle. All transport between two samples is computed from the old state
+// alone. Each window loses its outermost ring of samples.
 import package::wgsl::terrain::fixed::HEIGHT_LIMIT;
 import package::wgsl::terrain::windows::{inner_index, is_inner, sample_index, windows};
 
@@ -23,9 +23,10 @@ struct HydraulicParams {
     rain: i32,
     // Fraction of the water that evaporates in a cycle, in 1/32768.
     evaporation: i32,
-    // Fraction, per cycle, of the shortfall of sediment below capacity that erosion of the ground makes up, in 1/32768.
+    // Erosion rate, in 1/32768 per cycle. While the water carries less sediment than its capacity, this fraction of the
+    // difference is taken from the ground.
     erosion: i32,
-    // Fraction of the excess sediment that is deposited in a cycle, in 1/32768.
+    // Fraction of the sediment above the water's capacity that is deposited in a cycle, in 1/32768.
     deposition: i32,
     // Sediment capacity per unit of discharge at a slope of 1, in 1/256.
     capacity: i32,
@@ -35,9 +36,10 @@ struct HydraulicParams {
     // Height difference to the next sample at a slope of 1, in 1/65536 height units. Larger differences are clamped to this
     // one.
     steepest: i32,
-    // Shift in the conversion of a fall to its slope in 1/4096: ((fall >> slope_shift) * slope_factor) >> 15.
+    // Shift in the conversion from a fall (height difference) to a slope. The slope, in 1/4096, is
+    // ((fall >> slope_shift) * slope_factor) >> 15.
     slope_shift: u32,
-    // Factor in the conversion of a fall to its slope, see `slope_shift`.
+    // Factor in the conversion from a fall to a slope, see `slope_shift`.
     slope_factor: i32,
     // Largest stable height difference between two neighbours, in 1/65536 height units.
     talus: i32,
@@ -149,7 +151,7 @@ fn ground_room(ground: vec4<i32>, sediment: vec4<i32>) -> vec4<i32> {
     return (HEIGHT_LIMIT - ground - sediment) >> vec4<u32>(3u);
 }
 
-// Discharge around a sample: a quarter of the sample's discharge `own`, and three quarters of the mean outflow of its
+// Discharge around a sample: a quarter of `own`, the sample's discharge, plus three quarters of the mean outflow of its four
 // neighbours. `eighths` is the sum of an eighth of each outflow. Streams are therefore wider than a sample, and do not favour a
 // direction.
 fn discharge(own: i32, eighths: i32) -> i32 {
@@ -197,8 +199,8 @@ fn next_shares(flux: vec4<i32>, water: i32) -> vec4<i32> {
     return (vec4<i32>(shares) * 3) >> vec4<u32>(2u);
 }
 
-// floor(amount * share / 32768), per lane. Amounts of 0 to 2^30 may have shares of 0 to 32768. Any other amount may have shares
-// of at most 2048.
+// floor(amount * share / 32768), per lane. For amounts of 0 to 2^30, shares may be 0 to 32768. For all other amounts, shares
+// may be at most 2048.
 fn part(amounts: vec4<i32>, shares: vec4<i32>) -> vec4<i32> {
     let bits = vec4<u32>(15u);
     return (amounts >> bits) * shares + (((amounts & vec4<i32>(32767)) * shares) >> bits);

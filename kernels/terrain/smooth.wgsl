@@ -4,8 +4,8 @@
 import package::wgsl::terrain::fixed::{four_point, limited, mean_of_two};
 import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 
-// Number of points by which the listed features extend further on every side than for `terrain/height`. Edges of a window
-// depend on centers up to three points outside the window.
+// Extra margin of this kernel's feature grids on every side, in points, compared with the kernel `terrain/height`. Edge points
+// of a window depend on centers up to three points outside the window.
 const FEATURE_SHIFT = 2;
 
 // Heights along a row of coarse points, around one of the points.

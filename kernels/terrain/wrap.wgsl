@@ -1,5 +1,5 @@
-// One level of diamond-square subdivision for a batch of patches that are generated alone, with neighbours that wrap around (B
-// section 3.3.1). A thread recomputes the centers to the left of its coarse point and above it.
+// One level of diamond-square subdivision for a batch of patches that are generated alone, with neighbours that wrap around
+// (thesis B section 3.3.1). A thread recomputes the centers to the left of its coarse point and above it.
 import package::wgsl::terrain::fixed::mean_of_four;
 import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 

@@ -27,7 +27,7 @@ struct Timeline {
 
 // A position between two keys of a timeline.
 struct KeyframeCursor {
-    // Index in the timeline of the key before the time.
+    // Index of the last key at or before the time, counted from the timeline's first key; 0 before the first key.
     key: u32,
     // Fraction of the interval from `key` to the next key, 0 to below 1. The fraction is 0 before the first key and after the
     // last.
@@ -43,8 +43,8 @@ fn cursor_of_words(words: vec2<u32>) -> KeyframeCursor {
 // A track of a set of clips, in two words that one memory operation loads. Read the track with `timeline_of`,
 // `interpolation_of` and `first_value_of`.
 struct SetTrack {
-    // x: the track word. y: the index of the track's first value, or of the middle one of three values if the track is a
-    // constant spline.
+    // x: the track word. y: the index of the track's first value. If the track is a constant spline, it has three values, and y
+    // is the index of the middle one.
     words: vec2<u32>,
 }
 
@@ -61,7 +61,7 @@ fn interpolation_of(track: SetTrack) -> u32 {
     return track_interpolation(track.words.x);
 }
 
-// Index of a track's first value. For a constant spline, this is the middle one of its three values.
+// Index of a track's first value. A constant spline has three values; the result is the index of the middle one.
 fn first_value_of(track: SetTrack) -> u32 {
     return track.words.y;
 }

@@ -1,6 +1,6 @@
 // Conversion of elapsed time to time inside a clip.
 
-// Wrap code of an instance whose times outside the clip are clamped to the clip's start and end. Code 0 loops.
+// Wrap code: times outside the clip are clamped to the clip's start or end. With code 0, the clip loops.
 const WRAP_CLAMP = 1u;
 
 // Number of loops at and beyond which an f32 cannot resolve a position in a clip.

@@ -25,15 +25,16 @@ const OMEGA_ONE: u32 = 65536u;
 // Value of `Lod::weight` for an instance that counts in full.
 const FULL_WEIGHT: u32 = 65535u;
 
-// Position of an instance on the common timeline of its clip.
+// Position of an instance in its clip, on the clip's common timeline (its first one).
 struct ClipClock {
-    // Row of the gate's table: the index of the clip's first row, plus the key before the current time.
+    // Index of a row in the gate's table: the clip's first row, plus the index of the last key at or before the current time.
     row: u32,
     // Progress word: the fraction of the interval to the next row, 0 to FRACTION_ONE, and the [`UpdateReason`].
     fraction_and_reason: u32,
     // Index of the clip in its set.
     clip: u32,
-    // Row at the look-ahead time, for which bones may be sampled ahead. It equals `row` if there is no look-ahead time.
+    // Row at the look-ahead time: a later time, for which bones may already be sampled in this frame. It equals `row` if there
+    // is no look-ahead time.
     ahead_row: u32,
     // Fraction of the interval from the look-ahead row to the next row, 0 to FRACTION_ONE.
     ahead_fraction: u32,
@@ -66,5 +67,5 @@ fn fraction_of(clip_clock: ClipClock) -> u32 {
     return progress_fraction(clip_clock.fraction_and_reason);
 }
 
-// Flag in a pair of instance and bone: the bone is sampled at the look-ahead time.
+// Flag in the word of a pair, which stands for one bone of one instance: the bone is sampled at the look-ahead time.
 const PAIR_AHEAD: u32 = 0x80000000u;

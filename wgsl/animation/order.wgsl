@@ -6,7 +6,7 @@ struct Slot {
     bone: u32,
     // Index of the parent bone, CONTINUES or NO_PARENT.
     parent: u32,
-    // Number of slots of the bone and all its descendants. They begin with this slot.
+    // Number of slots of the bone and all its descendants. These slots are consecutive, and this slot is the first.
     subtree: u32,
 }
 

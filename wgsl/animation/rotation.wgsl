@@ -1,7 +1,7 @@
 // Interpolation of unit quaternions whose dot product is not negative.
 
-// Factor of the last coefficients of the polynomial. This value minimizes the largest error of the polynomial's five terms on
-// halved arcs.
+// Factor of the last coefficient in `SLERP_U` and `SLERP_V`. It compensates for omitted terms of the polynomial. With this
+// value, five terms have the smallest maximum error on halved arcs.
 const SLERP_REST: f32 = 1.15;
 // Coefficients 1/(i(2i + 1)), for i from 1 to 5, of Eberly's polynomial (Eberly 2011) for cosines from √½ to 1. The last one
 // compensates for omitted terms.

@@ -8,7 +8,7 @@ struct BudgetState {
     is_missed: u32,
     // Number of triangles drawn, in units of the budget. An instance that fades counts with both levels.
     triangles: u32,
-    // Degree of coarsening: the index of a part in the budget's histogram. The histogram has one range of parts per rank, in
-    // the order of ranks. Within a range, the index is proportional to the logarithm of the rank's factor.
+    // Degree of coarsening: an integer position on a scale. The scale has one section per rank, in the order of ranks. Within a
+    // section, the position is proportional to the logarithm of the rank's factor.
     pressure: u32,
 }

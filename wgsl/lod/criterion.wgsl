@@ -18,7 +18,7 @@ const CRITERION_NEAREST = 3u;
 const CRITERION_BOX = 4u;
 // Criterion: the metric is the square root of the ratio of the viewport's area to the projected area of the bounding sphere.
 const CRITERION_SPHERE = 5u;
-// Criterion: the metric is the number of world units per pixel at the middle of the bounding sphere (B equation 3.3).
+// Criterion: the metric is the number of world units per pixel at the middle of the bounding sphere (thesis B equation 3.3).
 const CRITERION_MAGNIFICATION = 6u;
 
 // Upper bound of the metric, for every criterion.

@@ -75,8 +75,8 @@ fn morphing(object: LodObject, metric: f32, mirrored: u32) -> u32 {
 
 // Decision word for a fade to the next coarser level while the metric passes the band around the threshold.
 fn fading_in_band(object: LodObject, metric: f32, mirrored: u32) -> u32 {
-    // The coarsest level whose band the metric has passed. With 0 as the last level, all thresholds are the upper ends of the
-    // bands.
+    // The coarsest level whose band the metric has passed. With 0 as the last level, `level_within` uses the upper ends of the
+    // bands as thresholds.
     let level = level_within(object, metric, 0u);
     if level + 1u >= min(object.levels, OBJECT_LEVELS) {
         return settled(level, mirrored);
@@ -121,8 +121,8 @@ fn coarsened(object: LodObject, metric: f32, factor: f32) -> f32 {
     return factor * metric + (factor - 1.0) * object.metric_floor;
 }
 
-// Level of the last frame that hysteresis holds. It is `NO_LEVEL` for geomorphs and for fades in a band, because these depend
-// only on this frame.
+// Level that hysteresis holds: the instance's level in the last frame. The result is `NO_LEVEL` for geomorphs and for fades in
+// a band, because these depend only on this frame.
 fn held_level(object: LodObject, last: u32) -> u32 {
     let transition = object_flags_transition(object.flags);
     let is_fading = transition >= TRANSITION_DITHER && transition <= TRANSITION_TWO_PHASE;
@@ -137,7 +137,7 @@ fn is_faded_out(object: LodObject, metric: f32) -> bool {
 }
 
 // Decision word for a visible instance. `factor` is a budget's factor, which coarsens the levels. `last` is the view's decision
-// word in the last frame, 0 if there is none. `ends` ends all fades.
+// word in the last frame, 0 if there is none. If `ends` is true, all fades end in this frame.
 fn transition_decision(object: LodObject, metric: f32, factor: f32, mirrored: u32, last: u32, seconds: f32, ends: bool) -> u32 {
     let transition = object_flags_transition(object.flags);
     let within = coarsened(object, metric, factor);

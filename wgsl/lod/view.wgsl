@@ -59,5 +59,6 @@ struct SelectView {
     last_clip_rows: array<vec4<f32>, 3>,
 }
 
-// Bound of the rounding error of results computed from positions in a view, as a fraction of the sum of the positions' lengths.
+// Bound of the relative rounding error of a computation from positions in a view. The error is relative to the sum of these
+// positions' lengths.
 const POSITION_SLACK: f32 = 3e-6;

@@ -50,8 +50,8 @@ fn is_left_out(word: u32, pixel: vec2<f32>) -> bool {
     return FADE == FADE_DITHER && is_covered == (fade_rest(fade) != 0u);
 }
 
-// Rank of a pixel, 0 to 63, in an 8 × 8 ordered-dither matrix (Bayer 1973). Its bits are the bits of x ^ y and y, interleaved
-// and reversed.
+// Rank of a pixel, 0 to 63, in an 8 × 8 ordered-dither matrix (Bayer 1973). The bits of the rank are the bits of x ^ y and y,
+// interleaved and reversed.
 fn pattern_rank(pixel: vec2<u32>) -> u32 {
     let x = pixel.x ^ pixel.y;
     var rank = 0u;

@@ -34,12 +34,12 @@ struct SceneObject {
 // Smallest absolute determinant of a matrix that is inverted.
 const LEAST_DETERMINANT: f32 = 1e-30;
 
-// Index in the chunk of a list entry's instance.
+// Index of a list entry's instance in the chunk.
 fn entry_instance(entry: u32) -> u32 {
     return list_entry_instance(entry);
 }
 
-// Index in the scene of a list entry's instance.
+// Index of a list entry's instance in the scene.
 fn instance_index(entry: u32) -> u32 {
     return scene_object.first_instance + entry_instance(entry);
 }
@@ -103,7 +103,7 @@ fn scene_last_rigid(entry: u32, position: vec3<f32>) -> vec3<f32> {
 }
 
 // Position of a surface point under the fade method `FADE_PUSHED`. The point is pushed away from the eye by the largest
-// distance between the instance's level and the next one.
+// distance between the surfaces of the instance's level and of the next level.
 fn pushed_position(entry: u32, placement: Rows, position: vec3<f32>) -> vec3<f32> {
     if FADE != FADE_PUSHED {
         return position;
@@ -116,8 +116,8 @@ fn pushed_position(entry: u32, placement: Rows, position: vec3<f32>) -> vec3<f32
     return position + scene_object.push[level >> 2u][level & 3u] * scale * away;
 }
 
-// A vertex, transformed by the placement of the instance of a list entry. The arguments are in model space; `tangent.w` is the sign of the
-// bitangent in model space.
+// A vertex, transformed by the placement of the instance of a list entry. `position`, `normal` and `tangent` are in model
+// space. `tangent.w` is the sign of the bitangent in model space.
 fn scene_placed(entry: u32, position: vec3<f32>, normal: vec3<f32>, tangent: vec4<f32>, uv: vec4<f32>) -> SceneVertex {
     let placement = instance_placement(instance_index(entry));
     let along = vec3<f32>(

@@ -96,7 +96,7 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let sample_index = vec2<f32>(patch_of.origin + vec2<i32>(at) - ground.base);
     let position = ground.rest
         + vec3<f32>(sample_index.x * terrain.spacing, height, sample_index.y * terrain.spacing);
-    // In all triangles of a patch that contain a vertex, the vertex has the same corner number, 0 to 2.
+    // Within a patch, all triangles give a vertex the same corner number, 0 to 2.
     var values = vec4<f32>(0.0, 0.0, 0.0, height);
     values[(at.x + 2u * at.y) % 3u] = 1.0;
     return SceneVertex(

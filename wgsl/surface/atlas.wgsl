@@ -14,13 +14,14 @@ fn surface_atlas_at(cells: vec2<u32>, level: u32, index: vec2<i32>) -> vec2<i32>
         return index;
     }
     // Upper bound of the number of rows of levels 1 to level - 1. Level k has at most (r >> 1) + 1 rows, where
-    // r = cells.y >> (k - 1). The bound is the sum over k of the larger number r - (r >> 1) + 1.
+    // r = cells.y >> (k - 1). The bound adds r - (r >> 1) + 1 for each k instead, which is at least as large and has a short
+    // sum.
     let above = cells.y - (cells.y >> (level - 1u)) + level - 1u;
     return index + vec2<i32>(vec2<u32>((cells.x + 3u) & ~3u, above));
 }
 
-// Index of the texel at the first corner of a cell, among the texels of all maps of a batch. Cells up to one beyond the last
-// are valid.
+// Index of the texel at the first corner of a cell, among the texels of all maps of a batch. `cell` may be one beyond the last
+// cell along each axis.
 fn surface_corner_index(size: vec2<u32>, address: u32, map: u32, cell: vec2<i32>) -> u32 {
     let texels = vec2<i32>(size);
     let wrapped = select(cell, vec2<i32>(0), cell >= texels);

@@ -105,7 +105,7 @@ fn surface_exits(grid: SurfaceGrid, node: SurfaceNode) -> vec2<f32> {
     return select(exits, vec2<f32>(SURFACE_NEVER), grid.inverse == vec2<f32>(0.0));
 }
 
-// Cell, inside a node, in which the ray is at `parameter`.
+// Cell that contains the ray's point at `parameter`, clamped to the cells of a node.
 fn surface_cell(grid: SurfaceGrid, node: SurfaceNode, parameter: f32) -> vec2<i32> {
     let at = vec2<i32>(floor(grid.start + parameter * grid.travel));
     return clamp(at, node.low, node.high - 1);

@@ -5,7 +5,7 @@ import package::wgsl::surface::ray::SURFACE_WRAP;
 // Number of texel loads for one bilinear height.
 const SURFACE_BILINEAR: u32 = 4u;
 
-// Height at uv, 0 to 1, at a mip level. `address` is SURFACE_WRAP or SURFACE_CLAMP.
+// Height, 0 to 1, at the coordinates `uv` in a mip level. `address` is SURFACE_WRAP or SURFACE_CLAMP.
 fn surface_height(heights: texture_2d<f32>, uv: vec2<f32>, mip: u32, address: u32) -> f32 {
     let size = vec2<f32>(textureDimensions(heights, mip));
     let last = vec2<i32>(size) - 1;

@@ -1,5 +1,6 @@
 // Linear search. Relief mapping refines the result by a binary search (thesis B section 3.1.2, table 4.4). Parallax occlusion
-// mapping refines it by a segment (thesis B section 2.3.1). Both may step over features that are thinner than a step.
+// mapping refines it by the intersection with a line segment (thesis B section 2.3.1). Both may step over features that are
+// thinner than a step.
 import package::wgsl::surface::ray::{SURFACE_HIT, SurfaceHit, SurfaceMarch, SurfaceRay, surface_at, surface_missed, surface_point};
 import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 
@@ -7,7 +8,7 @@ import package::wgsl::surface::height::{SURFACE_BILINEAR, surface_height};
 const SURFACE_MAX_STEPS: u32 = 1024u;
 // Largest number of binary steps in a march.
 const SURFACE_MAX_BINARY: u32 = 24u;
-// Smallest divisor in `surface_occlusion`: the sum of the ray's distances above and below the surface.
+// Smallest divisor in `surface_occlusion`. The divisor is the sum of the ray's distances above and below the surface.
 const SURFACE_LEAST_SPAN: f32 = 1e-12;
 
 // The two points of a ray between which a linear search stopped.

@@ -3,10 +3,10 @@
 
 // Address mode: the tile repeats.
 const SURFACE_WRAP: u32 = 0u;
-// Address mode: the texels at the tile's edge continue.
+// Address mode: beyond the tile, the texels at its edge continue.
 const SURFACE_CLAMP: u32 = 1u;
 
-// Outcome: the ray comes from behind.
+// Outcome: the ray comes from behind the polygon.
 const SURFACE_MISS: u32 = 0u;
 // Outcome: the ray met the surface.
 const SURFACE_HIT: u32 = 1u;
@@ -75,7 +75,7 @@ fn surface_point(ray: SurfaceRay, parameter: f32, samples: u32, outcome: u32) ->
     return SurfaceHit(surface_at(ray, parameter), 1.0 - parameter, parameter, samples, outcome);
 }
 
-// Result of a ray that comes from behind: the polygon's own point, with the outcome SURFACE_MISS.
+// Result of a ray that comes from behind the polygon: the polygon's own point, with the outcome SURFACE_MISS.
 fn surface_missed(ray: SurfaceRay) -> SurfaceHit {
     return surface_point(ray, ray.polygon, 0u, SURFACE_MISS);
 }

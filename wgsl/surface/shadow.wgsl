@@ -1,6 +1,6 @@
-// Self-shadow: whether light reaches a point of the surface (thesis B section 3.1.2). For a hard shadow, any method traces the
-// light's ray from the top of the volume; the point is lit if the ray ends there. For a soft shadow, samples measure how far the
-// surface rises above the path to the light. The further the occluder, the wider the penumbra.
+// Self-shadow: whether light reaches a point of the surface (thesis B section 3.1.2). For a hard shadow, any tracing method
+// traces the light's ray from the top of the volume. The point is lit if the ray reaches it. For a soft shadow, samples measure
+// how far the surface rises above the path to the light. The further the occluder, the wider the penumbra.
 import package::wgsl::surface::ray::{SURFACE_LEAST_COSINE, SurfaceHit, SurfaceMarch, SurfaceRay};
 import package::wgsl::surface::height::surface_height;
 import package::wgsl::surface::linear::SURFACE_MAX_STEPS;
@@ -17,7 +17,8 @@ fn surface_light_ray(hit: SurfaceHit, light: vec3<f32>, scale: f32) -> SurfaceRa
     return SurfaceRay(hit.uv - (1.0 - hit.height) * slope, slope, light.z, 0.0);
 }
 
-// Whether the light's ray, with the result `first`, ended above the point `hit` at which it was aimed.
+// Whether the point `hit` is in hard shadow. `first` is the result of the light's ray to this point: in shadow, the ray ended
+// above the point.
 fn surface_shaded(first: SurfaceHit, hit: SurfaceHit) -> bool {
     return first.parameter < 1.0 - hit.height - SURFACE_SHADOW_BIAS;
 }

@@ -31,8 +31,8 @@ fn multiply_high(a: vec4<u32>, b: u32) -> vec4<u32> {
 }
 
 // (9 (b + c) − (a + d)) / 16, rounded half up: the value halfway between b and c on the cubic through four values (Dyn, Levin
-// and Gregory 1987). No step overflows for values of at most 1.25 · 2^30, the largest result that this function has for
-// heights.
+// and Gregory 1987). For heights, the result is at most 1.25 · 2^30. No step overflows for values up to this bound, so results
+// may be interpolated again.
 fn four_point(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>, d: vec4<i32>) -> vec4<i32> {
     let four = vec4<u32>(4u);
     let low = vec4<i32>(15);

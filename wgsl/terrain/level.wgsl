@@ -34,7 +34,8 @@ struct Level {
 // Out: heights of the fine points of all windows, row by row, in 1/65536 units.
 @group(0) @binding(3) var<storage, read_write> fine: array<i32>;
 
-// Whether a thread may have fine points to write. The test allows for a window that starts anywhere in its first cell.
+// Whether a thread may have fine points to write. A window starts at the first or at the second fine point of its first cell;
+// the test covers both cases.
 fn has_point(id: vec3<u32>) -> bool {
     return all(id.xy <= vec2<u32>(level.fine_width / 2u));
 }

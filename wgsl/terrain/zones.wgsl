@@ -49,7 +49,7 @@ fn steepness(normal: vec3<f32>) -> f32 {
 
 // Weight of a zone, 0 to 1, at a height in height units and a steepness. It is the product of a weight by height and the two
 // weights by steepness. The weight by height is 1 at `max`. It is 0 where the height differs from `max` by `max` − `min` or
-// more (B equation 3.6).
+// more (thesis B equation 3.6).
 fn zone_weight(zone: Zone, height: f32, steep: f32) -> f32 {
     let range = zone.max - zone.min;
     let rise = clamp(zone.rise.x * steep + zone.rise.y, 0.0, 1.0);
