@@ -18,7 +18,7 @@
 //!
 //! - Successive keys with equal times make the value jump: from that time on, the last of these keys applies. Descending times
 //!   are refused.
-//! - Quaternions are stored with length 1. A quaternion shorter than [`SHORTEST`](super::transform::SHORTEST) is refused.
+//! - Quaternions are stored with length 1. A quaternion shorter than 1e-6 is refused.
 //! - A key of a linear rotation is stored with the sign that brings it closer to the previous key. Sampling then takes the
 //!   shortest path between neighbouring keys, without tests of signs. Cubic splines keep all signs, because the signs of a
 //!   value and its tangents must match.

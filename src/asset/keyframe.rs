@@ -11,7 +11,7 @@ impl Default for KeyframeCursor {
 
 /// Finds the last key at or before `time`, and the position of `time` between this key and the next, as a fraction from 0 to 1.
 /// All times are in seconds. Before the first key and after the last, the fraction is 0.
-pub(crate) fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
+pub fn keyframe_cursor(times: &[f32], time: f32) -> KeyframeCursor {
     let last = times.len().saturating_sub(1);
     if last == 0 || time < times[0] {
         return KeyframeCursor { key: 0, fraction: 0.0 };

@@ -3,7 +3,7 @@
 use crate::InputError;
 
 /// Shortest length of a quaternion with a usable direction; a shorter quaternion is refused.
-pub const SHORTEST: f32 = 1e-6;
+pub(crate) const SHORTEST: f32 = 1e-6;
 
 /// The transform `translation · rotation · scale`; scale is applied first.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -37,7 +37,7 @@ impl Transform {
     /// Checks the transform, and returns it with its rotation normalized.
     ///
     /// # Errors
-    /// [`InputError`] for values that are not finite, and for a rotation shorter than [`SHORTEST`]. In the path of the error,
+    /// [`InputError`] for values that are not finite, and for a rotation shorter than 1e-6. In the path of the error,
     /// `path` precedes the field's name.
     pub fn checked(self, path: &str) -> Result<Self, InputError> {
         finite(&format!("{path}.translation"), &self.translation)?;
