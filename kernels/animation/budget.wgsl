@@ -1,7 +1,7 @@
 // Selects the bones to sample when their number is limited: the bones whose outdated transforms are expected to be most
 // visible. There are five stages, one dispatch each. Bones of equal rank are served in the order of instances and slots, so
 // that every device decides identically.
-import package::wgsl::animation::gate_state::{Lod, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, ClipClock, fraction_of, update_reason_of};
+import package::wgsl::animation::gate_state::{Lod, lod_flags_tier, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between};
 
 // Stage of the kernel: one of the constants below.
@@ -35,6 +35,10 @@ struct BudgetParams {
     stride: u32,
     // Largest number of bones that may be sampled in a frame.
     budget: u32,
+    // Number of clips.
+    clips: u32,
+    // Number of skeleton tiers.
+    tiers: u32,
 }
 
 // Parameters of the kernel.
@@ -43,7 +47,8 @@ struct BudgetParams {
 @group(0) @binding(1) var<storage, read> lods: array<Lod>;
 // Clip clock of each instance.
 @group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
-// Per clip: the index of its last row in `table`, then one bit per bone that the clip moves.
+// Per skeleton tier and clip: the index of the clip's last row in `table`, then one bit per bone of the tier that the clip moves.
+// After all tiers, two bit sets per tier: all of its bones, and the bones that no gate skips.
 @group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
 // Per row and bone: the accumulated motion (x) and its increase up to the next row (y). In a clip's last row, x is the motion
 // over the whole clip.
@@ -94,10 +99,13 @@ fn word_of_bones_at(index: u32) -> WordOfBones {
     let word = index - instance * params.words;
     let clip_clock = clip_clocks[instance];
     let reason = update_reason_of(clip_clock);
-    let record = clip_clock.clip * (params.words + 1u);
-    let all = 0xffffffffu >> (32u - min(params.bones - 32u * word, 32u));
-    let candidates = select(animated_bones[record + 1u + word], 0u, reason != UPDATE_REASON_FREE);
-    let forced = select(0u, all, reason >= UPDATE_REASON_FORCED);
+    let tier = lod_flags_tier(lods[instance].flags);
+    let record = (tier * params.clips + clip_clock.clip) * (params.words + 1u);
+    let sets = params.tiers * params.clips * (params.words + 1u) + 2u * tier * params.words + word;
+    let moving = animated_bones[record + 1u + word];
+    let always = animated_bones[sets + params.words];
+    let candidates = select(moving & ~always, 0u, reason != UPDATE_REASON_FREE);
+    let forced = select(select(moving & always, 0u, reason == UPDATE_REASON_HIDDEN), animated_bones[sets], reason >= UPDATE_REASON_FORCED);
     return WordOfBones(instance, 32u * word, candidates, forced, animated_bones[record], clip_clock);
 }
 

@@ -2,7 +2,7 @@
 // this clock. A thread handles one instance.
 import package::wgsl::animation::clip::{ClipEntry, KeyframeCursor, Timeline};
 import package::wgsl::animation::clock::inside_clip;
-import package::wgsl::animation::gate_state::{FRACTION_ONE, LOD_FORCED, LOD_HIDDEN, Lod, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock, progress_word};
+import package::wgsl::animation::gate_state::{FRACTION_ONE, LOD_FORCED, LOD_HIDDEN, Lod, lod_flags_tier, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock, progress_word};
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::keyframe_cursor;
 
@@ -31,14 +31,16 @@ struct ClipClockParams {
 @group(0) @binding(5) var<storage, read> lods: array<Lod>;
 // Weights of the layers above the base layer, layer by layer, one per instance.
 @group(0) @binding(6) var<storage, read> layer_weights: array<f32>;
-// State of each instance in the last frame. x: clip + 1, with BLENDED if layers were above the clip; 0 if no pose is stored. y:
-// hash of the clips of these layers. z: time inside the clip. w: look-ahead time inside the clip. Times are f32 as bits.
+// State of each instance in the last frame. x: clip + 1, with the skeleton tier from bit TIER_SHIFT on, and with BLENDED if layers
+// were above the clip; 0 if no pose is stored. y: hash of the clips of these layers. z: time inside the clip. w: look-ahead time inside the clip. Times are f32 as bits.
 @group(0) @binding(7) var<storage, read_write> history: array<vec4<u32>>;
 // Out: clip clock of each instance.
 @group(0) @binding(8) var<storage, read_write> clip_clocks: array<ClipClock>;
 
 // Flag in the first word of `history`: layers were blended over the clip.
 const BLENDED: u32 = 0x80000000u;
+// Lowest bit of the skeleton tier in the first word of `history`.
+const TIER_SHIFT: u32 = 24u;
 // Factor in the hash of the clips above the base layer (`clips_above`).
 const CLIP_HASH_FACTOR: u32 = 31u;
 
@@ -75,7 +77,8 @@ fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
     let later = select(time, then, params.ahead != 0.0);
     let ahead = keyframe_cursor(timeline, later);
     let above = clips_above(index, instance.clip);
-    let base = (instance.clip + 1u) | select(0u, BLENDED, above != 0u);
+    let tier = lod_flags_tier(flags) << TIER_SHIFT;
+    let base = (instance.clip + 1u) | tier | select(0u, BLENDED, above != 0u);
     let known = vec4<u32>(base, above, bitcast<u32>(time), bitcast<u32>(later));
     let last = history[index];
     var reason = UPDATE_REASON_FREE;

@@ -1,7 +1,7 @@
 // Gate: decides which bones of which instances are sampled this frame, one bit each. All arithmetic is on integers, so that
 // every device decides identically. A thread decides for up to 32 bones of one instance. With BOUNDED, a thread decides for all
 // bones of one instance, because parents pass their remaining error budget to their children.
-import package::wgsl::animation::gate_state::{Lod, OMEGA_ONE, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, is_ahead, update_reason_of};
+import package::wgsl::animation::gate_state::{Lod, lod_flags_tier, OMEGA_ONE, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, is_ahead, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between, scale_by_fraction};
 import package::wgsl::animation::order::NO_PARENT;
 
@@ -37,6 +37,10 @@ struct GateParams {
     period: u32,
     // Number of frames since the start.
     frame: u32,
+    // Number of clips.
+    clips: u32,
+    // Number of skeleton tiers.
+    tiers: u32,
     // Index of the table's row with the nearest animated ancestors of all slots in the first clip. The nearest animated
     // ancestor of a slot is the nearest slot above it that the clip moves. Rows for the other clips follow.
     first_above: u32,
@@ -48,7 +52,8 @@ struct GateParams {
 @group(0) @binding(1) var<storage, read> lods: array<Lod>;
 // Clip clock of each instance.
 @group(0) @binding(2) var<storage, read> clip_clocks: array<ClipClock>;
-// Per clip: the index of its last row in `table`, then one bit per bone that the clip moves.
+// Per skeleton tier and clip: the index of the clip's last row in `table`, then one bit per bone of the tier that the clip moves.
+// After all tiers, two bit sets per tier: all of its bones, and the bones that no gate skips.
 @group(0) @binding(3) var<storage, read> animated_bones: array<u32>;
 // Rows of the gate's table. With SKIP_PERIOD, they hold priorities, four per vector. With BOUNDED, they hold per bone the
 // accumulated motion (x) and its increase up to the next row (y). In a clip's last row, x is the motion over the whole clip,
@@ -230,11 +235,14 @@ fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: pt
     if reason == UPDATE_REASON_HIDDEN {
         return Chosen(0u, 0u);
     }
-    let record = clip_clock.clip * (params.words + 1u);
-    let all = 0xffffffffu >> (32u - min(params.bones - first, 32u));
+    let tier = lod_flags_tier(lod.flags);
+    let record = (tier * params.clips + clip_clock.clip) * (params.words + 1u);
+    let sets = params.tiers * params.clips * (params.words + 1u) + 2u * tier * params.words + word;
+    let all = animated_bones[sets];
     let candidates = select(animated_bones[record + 1u + word], all, reason == UPDATE_REASON_BLENDED);
+    let always = candidates & animated_bones[sets + params.words];
     // Accumulated motion describes a single clip, so it decides only for the update reason UPDATE_REASON_FREE.
-    let forced = select(0u, all, reason >= UPDATE_REASON_FORCED);
+    let forced = select(always, all, reason >= UPDATE_REASON_FORCED);
     if MODE == BOUNDED {
         let accumulated = AccumulatedMotion(min(lod.allowed, EVERYTHING - 1u), clip_clock, animated_bones[record]);
         return by_motion(instance, first, candidates, forced, accumulated, left);
@@ -251,7 +259,7 @@ fn gate_word(instance: u32, word: u32, lod: Lod, clip_clock: ClipClock, left: pt
     } else if MODE == RANDOM {
         chosen = at_random(instance, first, candidates, lod.omega);
     }
-    return Chosen(chosen, 0u);
+    return Chosen(chosen | always, 0u);
 }
 
 @compute @workgroup_size(64)

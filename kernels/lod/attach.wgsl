@@ -2,6 +2,7 @@
 // matrix of the bone and the mesh's own offset. If no view of the frame sees the character, its bones are outdated, and the
 // mesh becomes a point, which draws nothing. If the scene keeps its last frame, the thread also writes the transform that the
 // mesh had in the last frame.
+import package::wgsl::lod::allowed::Allowed;
 import package::wgsl::affine::product_row;
 import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::view::SelectView;
@@ -66,7 +67,7 @@ struct KeptBone {
 @group(0) @binding(4) var<storage, read> instances: array<SceneInstance>;
 // Per instance of the scene: the displacement that the frame's views allow; negative if no view sees the instance.
 // length: instances
-@group(0) @binding(5) var<storage, read> allowed: array<f32>;
+@group(0) @binding(5) var<storage, read> allowed: array<Allowed>;
 // Three rows per instance of the scene: the transform from model space to positions relative to the corner of the view's cell.
 // From index `first_last` on: the last frame's transforms, relative to the corner of the same cell. Out: the rows of attached
 // meshes.
@@ -106,7 +107,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         product_row(model_matrices[bone], offset[0], offset[1], offset[2]),
         product_row(model_matrices[bone + 1u], offset[0], offset[1], offset[2]),
         product_row(model_matrices[bone + 2u], offset[0], offset[1], offset[2]));
-    let is_seen = allowed[character] >= 0.0;
+    let is_seen = allowed[character].displacement >= 0.0;
     write_placed(instances[character], local, attachment.mesh, is_seen);
     if params.first_last == 0u {
         return;

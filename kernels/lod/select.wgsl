@@ -1,13 +1,11 @@
 // Finds the instances of a scene that a view sees, with their metric, placement and allowed displacement. A thread handles one
 // instance. `lod/decide` then chooses their levels of detail.
-import package::wgsl::lod::allowed::{MAX_ALLOWED, allowed_in_model, camera_allows};
+import package::wgsl::lod::allowed::{Allowed, MAX_ALLOWED, UNSEEN_ALLOWED, allowed_in_model, camera_allows};
 import package::wgsl::lod::criterion::{MAX_METRIC, Placed, criterion_metric};
 import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, Axes, SceneInstance, instance_axes, instance_flags_mask, instance_position};
 import package::wgsl::lod::object::{BLOCK, LodObject, NO_OBJECT, UNSEEN_METRIC, decision_seen, metric_word, object_flags_never_culled, object_flags_shown};
 import package::wgsl::lod::view::{POSITION_SLACK, SelectView, VIEW_CAMERAS};
 
-// Allowed displacement of an instance that no view of the frame has seen.
-const UNSEEN_ALLOWED: f32 = -1.0;
 // Largest speed in the picture that counts, in picture heights per second.
 const MAX_MOTION: f32 = 4.0;
 
@@ -21,10 +19,10 @@ const MAX_MOTION: f32 = 4.0;
 // The instances of all blocks.
 // length: BLOCK * blocks
 @group(0) @binding(3) var<storage, read> instances: array<SceneInstance>;
-// Out, per instance: the displacement that all views of the frame allow, in model units. Only views that see the instance
-// count. `UNSEEN_ALLOWED` if no view sees the instance.
+// Out, per instance: the displacement that all views of the frame allow, and the distance of the nearest eye. Only views that
+// see the instance count.
 // length: BLOCK * blocks
-@group(0) @binding(4) var<storage, read_write> allowed: array<f32>;
+@group(0) @binding(4) var<storage, read_write> allowed: array<Allowed>;
 // Out, per instance: the metric word; `UNSEEN_METRIC` if the view does not see the instance.
 // length: BLOCK * blocks
 @group(0) @binding(5) var<storage, read_write> metrics: array<u32>;
@@ -81,23 +79,26 @@ fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
     return 1.0 + object.motion * min(speed, MAX_MOTION) + object.periphery * min(length(now), 1.0);
 }
 
-// Allowed displacement and metric of a visible instance, over all cameras of a view.
+// Allowed displacement, distance and metric of a visible instance, over all cameras of a view.
 struct Seen {
     // Smallest displacement that any of the view's cameras allows, in model units.
     allowed: f32,
+    // Smallest distance of the middle of the bounding sphere from any of the view's eyes, in world units.
+    distance: f32,
     // Smallest metric in any of the view's cameras, which decides the level.
     metric: f32,
 }
 
-// Allowed displacement and metric of a visible instance, over all cameras of the view. Driver workaround: where uniforms alone
+// Allowed displacement, distance and metric of a visible instance, over all cameras of the view. Driver workaround: where uniforms alone
 // decide loops and branches, lavapipe compiles the kernel again in each submission. The loop therefore also depends on `seen`.
 fn seen_by(object: LodObject, placed: Placed, scale: f32) -> Seen {
     let cameras = min(view.camera_count, VIEW_CAMERAS);
-    var seen = Seen(MAX_ALLOWED, MAX_METRIC);
+    var seen = Seen(MAX_ALLOWED, MAX_METRIC, MAX_METRIC);
     for (var index = 0u; index < select(0u, cameras, seen.allowed >= 0.0); index++) {
         let camera = view.cameras[index];
         let allowed = allowed_in_model(camera_allows(camera, placed.center, placed.radius), scale);
         seen.allowed = min(seen.allowed, allowed);
+        seen.distance = min(seen.distance, camera.perspective * length(placed.center - camera.eye));
         seen.metric = min(seen.metric, criterion_metric(object, camera, placed, allowed));
     }
     return seen;
@@ -106,7 +107,10 @@ fn seen_by(object: LodObject, placed: Placed, scale: f32) -> Seen {
 // Metric word of an instance in the view. Also writes the instance's placement and its allowed displacement.
 fn metric_of(index: u32, object: LodObject) -> u32 {
     let instance = instances[index];
-    let before = select(allowed[index], UNSEEN_ALLOWED, view.is_first != 0u);
+    var before = allowed[index];
+    if view.is_first != 0u {
+        before = Allowed(UNSEEN_ALLOWED, MAX_METRIC);
+    }
     if is_shown(instance, object) {
         let axes = instance_axes(instance);
         let at = instance_position(instance, view.cell);
@@ -122,7 +126,10 @@ fn metric_of(index: u32, object: LodObject) -> u32 {
                 vec4<f32>(axes.x.x, axes.y.x, axes.z.x, at.x),
                 vec4<f32>(axes.x.y, axes.y.y, axes.z.y, at.y),
                 vec4<f32>(axes.x.z, axes.y.z, axes.z.z, at.z));
-            allowed[index] = select(seen.allowed, min(before, seen.allowed), before >= 0.0);
+            let is_seen = before.displacement >= 0.0;
+            allowed[index] = Allowed(
+                select(seen.allowed, min(before.displacement, seen.allowed), is_seen),
+                select(seen.distance, min(before.distance, seen.distance), is_seen));
             let s = instance.scale;
             let is_mirrored = ((s.x < 0.0) != (s.y < 0.0)) != (s.z < 0.0);
             return metric_word(bitcast<u32>(min(factor * seen.metric, MAX_METRIC)), u32(is_mirrored));

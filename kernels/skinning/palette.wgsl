@@ -1,5 +1,6 @@
 // Palettes: for each instance and bone of a skin, the matrix from bind space to model space. With DUAL, the matrix is
-// decomposed into a stretch followed by a rigid motion. A thread computes one bone. Invisible instances are skipped.
+// decomposed into a stretch followed by a rigid motion. A thread computes one bone. Invisible instances are skipped, and so are
+// bones of a skeleton tier that the instance does not use.
 import package::wgsl::skinning::instance_lod::InstanceLod;
 import package::wgsl::affine::product_row;
 import package::wgsl::skinning::rows::{LEAST_LENGTH, unit_or};
@@ -19,7 +20,8 @@ struct PaletteParams {
 
 // Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: PaletteParams;
-// Index in the skeleton of each bone of the skin.
+// Bone word of each bone of the skin: its index in the skeleton, and the tier of the skeleton that it belongs to.
+// packed SkinBone: index 24, tier 8
 @group(0) @binding(1) var<storage, read> bones: array<u32>;
 // Inverse bind matrices: three rows per bone of the skin.
 @group(0) @binding(2) var<storage, read> inverse_binds: array<vec4<f32>>;
@@ -84,15 +86,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         return;
     }
     let instance = pair / params.bones;
-    if instance_lods[instance].max_influences == 0u {
+    let bone = pair - instance * params.bones;
+    let lod = instance_lods[instance];
+    if lod.max_influences == 0u || lod.tier != skin_bone_tier(bones[bone]) {
         return;
     }
-    let bone = pair - instance * params.bones;
     let bind = 3u * bone;
     let x = inverse_binds[bind];
     let y = inverse_binds[bind + 1u];
     let z = inverse_binds[bind + 2u];
-    let model = 3u * (instance * params.all_bones + bones[bone]);
+    let model = 3u * (instance * params.all_bones + skin_bone_index(bones[bone]));
     let rows = array<vec4<f32>, 3>(
         product_row(model_matrices[model], x, y, z),
         product_row(model_matrices[model + 1u], x, y, z),

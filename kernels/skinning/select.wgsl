@@ -18,7 +18,7 @@ override CLEAR: bool = false;
 override KEEP: bool = false;
 
 // Number of words per instance in `skinned` before the instance's weights.
-const SKINNED_WORDS: u32 = 4u;
+const SKINNED_WORDS: u32 = 5u;
 
 // Parameters of the kernel `skinning/select`.
 struct SelectParams {
@@ -54,7 +54,7 @@ struct Dispatched {
 
 // Parameters of the kernel.
 @group(0) @binding(0) var<uniform> params: SelectParams;
-// Bone set of each cluster, one bit per bone.
+// Bone set of each cluster, one bit per bone, for one skeleton tier after the other.
 @group(0) @binding(1) var<storage, read> masks: array<u32>;
 // Set of updated bones of each instance, one bit per bone.
 @group(0) @binding(2) var<storage, read_write> updated_bones: array<u32>;
@@ -87,7 +87,8 @@ fn finish(index: u32) {
         skinned[to] = bitcast<u32>(now.influence_fade);
         skinned[to + 1u] = now.max_influences;
         skinned[to + 2u] = now.mesh_lod;
-        skinned[to + 3u] = select(min(skinned[to + 3u] + 1u, 2u), 0u, now.max_influences == 0u);
+        skinned[to + 3u] = now.tier;
+        skinned[to + 4u] = select(min(skinned[to + 4u] + 1u, 2u), 0u, now.max_influences == 0u);
         for (var target_index = 0u; target_index < params.targets; target_index++) {
             skinned[to + SKINNED_WORDS + target_index] = weights[index * params.targets + target_index];
         }
@@ -139,9 +140,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     }
     let last = instance * (SKINNED_WORDS + params.targets);
     var found = bitcast<u32>(now.influence_fade) != skinned[last] || now.max_influences != skinned[last + 1u]
-        || cluster >= clusters_of(skinned[last + 2u]);
+        || cluster >= clusters_of(skinned[last + 2u]) || now.tier != skinned[last + 3u];
     for (var word = 0u; word < params.words && !found; word++) {
-        found = (masks[cluster * params.words + word] & updated_bones[instance * params.words + word]) != 0u;
+        found = (masks[(now.tier * params.clusters + cluster) * params.words + word] & updated_bones[instance * params.words + word]) != 0u;
     }
     if params.targets > 0u && !found {
         found = is_morphed_anew(cluster, instance, last);

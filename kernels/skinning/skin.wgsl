@@ -37,7 +37,8 @@ struct SkinParams {
 @group(0) @binding(0) var<uniform> params: SkinParams;
 // Vertices, five pairs of floats each: position, normal, tangent and handedness.
 @group(0) @binding(1) var<storage, read> vertices: array<vec2<f32>>;
-// Two words per cluster: the index of its influences, and the largest number of influences per vertex. Influences are columns
+// Two words per cluster, for one skeleton tier after the other: the index of its influences, and the largest number of influences
+// per vertex. Influences are columns
 // of CLUSTER words: first the bones, two per word, then the weights of all but the strongest bone, in descending order.
 @group(0) @binding(2) var<storage, read> influences: array<u32>;
 // Three rows per bone and instance. With DUAL, four vectors per bone and instance.
@@ -163,8 +164,9 @@ fn main(
         }
         to = 5u * (CLUSTER * page + lane);
     }
+    let header = 2u * (instance_lod.tier * ((params.vertices + CLUSTER - 1u) / CLUSTER) + cluster);
     let rows = blended(
-        influences[2u * cluster] + lane, influences[2u * cluster + 1u], instance * params.bones, instance_lod);
+        influences[header] + lane, influences[header + 1u], instance * params.bones, instance_lod);
     let first = select(5u * vertex, to, MORPHED);
     let a = vertices[first];
     let b = vertices[first + 1u];

@@ -14,7 +14,8 @@ pub struct GateState {
     pub clip_clocks: Buffer<ClipClock>,
     /// Four words per instance. If all are zero, no pose is stored. The words are:
     ///
-    /// - the last clip index + 1, with the highest bit set if layers above the base had weight;
+    /// - the last clip index + 1, with the skeleton tier from bit 24 on, and with the highest bit set if layers above the base had
+    ///   weight;
     /// - a hash of the clips of these layers;
     /// - the last time inside the clip, as the bits of an `f32`;
     /// - the look-ahead time inside the clip, as the bits of an `f32`.

@@ -4,8 +4,8 @@
 
 use crate::InputError;
 use crate::shared::animation::gate_state;
-/// Packed [`Lod`] that kernels read and write: the struct `Lod` of the WGSL module `animation`. The field `flags` is
-/// `LOD_HIDDEN`, `LOD_FORCED` or 0.
+/// Packed [`Lod`] that kernels read and write: the struct `Lod` of the WGSL module `animation`. The field `flags` has
+/// `LOD_HIDDEN`, `LOD_FORCED` or 0, and the tier of the skeleton.
 pub use crate::shared::animation::gate_state::Lod as PackedLod;
 pub use crate::shared::animation::gate_state::{FULL_WEIGHT, OMEGA_ONE};
 
@@ -22,6 +22,9 @@ pub struct Lod {
     pub weight: u32,
     /// Selects the bones that a frame samples: the gate's choice, none or all.
     pub sampling: BoneSampling,
+    /// Tier of the skeleton whose bones are sampled ([`Skeleton::with_tier`](crate::asset::Skeleton::with_tier)); 0 is the whole
+    /// skeleton. After a change, all bones of the new tier are sampled.
+    pub tier: u32,
 }
 
 /// Selects the bones of an instance that a frame samples.
@@ -40,7 +43,7 @@ pub enum BoneSampling {
 impl Lod {
     /// Full detail: no motion may be missed, and the gate skips nothing.
     pub const FULL: Self =
-        Self { omega: OMEGA_ONE, allowed: 0, weight: FULL_WEIGHT, sampling: BoneSampling::Gated };
+        Self { omega: OMEGA_ONE, allowed: 0, weight: FULL_WEIGHT, sampling: BoneSampling::Gated, tier: 0 };
 
     /// The level of detail in the packed form that kernels read.
     pub fn packed(&self) -> PackedLod {
@@ -49,6 +52,7 @@ impl Lod {
             BoneSampling::Hidden => gate_state::LOD_HIDDEN,
             BoneSampling::Forced => gate_state::LOD_FORCED,
         };
+        let flags = gate_state::lod_flags_word(flags, self.tier);
         PackedLod { omega: self.omega, allowed: self.allowed, weight: self.weight, flags }
     }
 }

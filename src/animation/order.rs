@@ -51,6 +51,8 @@ pub struct Order {
     pub chains: Vec<Chain>,
     /// Index in `chains` of the first chain of each level, followed by the number of chains.
     pub levels: Vec<u32>,
+    /// Tier of the skeleton that each slot's bone belongs to ([`Skeleton::with_tier`]).
+    pub tiers: Vec<u32>,
 }
 
 impl Order {
@@ -81,7 +83,8 @@ impl Order {
             chains.resize(chains.len().max(level + 1), Vec::new());
             chains[level].push(Chain { first, count: slots.len() as u32 - first });
         }
-        let mut order = Self { slots, chains: Vec::new(), levels: vec![0] };
+        let tiers = slots.iter().map(|slot| skeleton.tier_of(slot.bone) as u32).collect();
+        let mut order = Self { slots, chains: Vec::new(), levels: vec![0], tiers };
         for mut level in chains {
             // Sort by length, so that neighbouring threads of one instance process chains of similar length.
             level.sort_by_key(|chain| std::cmp::Reverse(chain.count));

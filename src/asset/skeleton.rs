@@ -36,6 +36,8 @@ pub struct Skeleton {
     joints: Vec<u32>,
     depths: Vec<u32>,
     descendants: Vec<u32>,
+    /// Index of the first bone of each tier, ascending from 0. See [`Skeleton::with_tier`].
+    tiers: Vec<u32>,
 }
 
 /// Largest allowed difference between the length of a stored rotation and 1.
@@ -102,7 +104,7 @@ impl Skeleton {
         }
         let depths = depths(&bones);
         let descendants = descendants(&bones);
-        Ok(Self { bones, joints, depths, descendants })
+        Ok(Self { bones, joints, depths, descendants, tiers: vec![0] })
     }
 
     /// Builds a skeleton whose bones are all joints.
@@ -112,6 +114,31 @@ impl Skeleton {
     pub fn of_joints(bones: Vec<Bone>) -> Result<Self, InputError> {
         let joints = (0..bones.len() as u32).collect();
         Self::new(bones, joints)
+    }
+
+    /// Appends the bones of another skeleton as one more tier. No bone has a parent in another tier. Gates sample the bones of one
+    /// tier per instance.
+    ///
+    /// # Errors
+    /// [`InputError`] for too many bones or more than 255 tiers in total.
+    pub fn with_tier(&self, other: &Self) -> Result<Self, InputError> {
+        InputError::check_most("tiers.len", self.tiers.len() + other.tiers.len(), 255)?;
+        let first = self.bones.len() as u32;
+        let moved = |bone: &Bone| Bone { parent: bone.parent.map(|parent| parent + first), ..bone.clone() };
+        let bones = self.bones.iter().cloned().chain(other.bones.iter().map(moved)).collect();
+        let moved = |bones: &[u32]| bones.iter().map(|bone| first + bone).collect::<Vec<_>>();
+        let joints = [self.joints.clone(), moved(&other.joints)].concat();
+        Ok(Self { tiers: [self.tiers.clone(), moved(&other.tiers)].concat(), ..Self::new(bones, joints)? })
+    }
+
+    /// Number of tiers: 1, and one more for each [`Skeleton::with_tier`].
+    pub fn tiers(&self) -> usize {
+        self.tiers.len()
+    }
+
+    /// Index of the tier that a bone belongs to.
+    pub fn tier_of(&self, bone: u32) -> usize {
+        self.tiers.partition_point(|first| *first <= bone) - 1
     }
 
     /// The bones; every parent comes before its children.

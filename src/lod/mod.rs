@@ -39,8 +39,8 @@ pub mod transition;
 
 pub use crate::shared::lod::budget_state::BudgetState;
 pub use crate::shared::lod::instance::{
-    CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_FOLLOWS, SceneInstance,
-    instance_flags_mask, instance_flags_word,
+    CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CARRIES, INSTANCE_CASTS, INSTANCE_FOLLOWS, INSTANCE_WHOLE,
+    SceneInstance, instance_flags_mask, instance_flags_word,
 };
 pub use crate::shared::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 pub use crate::shared::lod::view::{LodCamera, SelectView, VIEW_CAMERAS};

@@ -113,6 +113,7 @@ impl Scene {
         let bones = bones.iter().map(|bone| Ok(self.bone(instance, bone)? as u32));
         let bones = bones.collect::<Result<Vec<_>, InputError>>()?;
         self.character_mut(instance)?.drive(instance.index, bones);
+        self.object_mut(instance.object())?.mark_whole(instance.index);
         Ok(())
     }
 

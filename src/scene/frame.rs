@@ -5,6 +5,7 @@ use crate::gpu::Staged;
 use crate::lod::budget::BudgetStage;
 use crate::lod::transition::Transition;
 use crate::lod::{SceneInstance, SelectView};
+use crate::scene::character::TICKS;
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, SortedDraws, SortedPart};
 use crate::scene::drive::Poses;
 use crate::scene::object::{self, Object};
@@ -420,7 +421,11 @@ impl Scene {
             let now = Moment { frame: self.frames, time: self.now, is_first: at == 0 };
             view.stage(&mut self.staged, (layout, &self.light), sides, now)?;
         }
-        let frame = Frame { ticks: 0, frame_ticks: 0, frame: self.frames as u32, ahead: self.step };
+        let ticks = |seconds: f64| (seconds * TICKS).round() as i64 as u32;
+        let last = std::mem::replace(&mut self.last_staged, self.now).min(self.now);
+        let frame_ticks = ticks(self.now).wrapping_sub(ticks(last));
+        let frame =
+            Frame { ticks: ticks(self.now), frame_ticks, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {
             object.stage((&mut self.staged, layout), (&frame, self.now))?;
         }

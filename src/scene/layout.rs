@@ -8,6 +8,7 @@ use crate::Error;
 use crate::gpu::{Buffer, Gpu};
 use crate::lod::sorted::SortedDraw;
 use crate::scene::handles::ObjectId;
+use crate::shared::lod::allowed::Allowed;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::lod::object::{BLOCK, LodObject, OBJECT_LEVELS, SceneDraw};
 
@@ -32,7 +33,7 @@ pub(crate) struct Layout {
     pub last_instances: Buffer<SceneInstance>,
     pub keeps_last: bool,
     /// Allowed displacement per instance, in its model's units; −1 for instances that no view sees.
-    pub allowed: Buffer<f32>,
+    pub allowed: Buffer<Allowed>,
     /// Per instance: the finest level that any of the frame's views draws.
     pub finest: Buffer<u32>,
     pub objects: Buffer<LodObject>,
@@ -116,6 +117,8 @@ pub(super) struct CountedObject {
     pub rank: u32,
     /// Whether the object's instances may fade.
     pub fades: bool,
+    /// Whether the object keeps the error that views allow.
+    pub is_bounded: bool,
 }
 
 /// All objects of a layout whose draws are counted for statistics.

@@ -150,6 +150,11 @@ impl LevelOfDetail {
         }
     }
 
+    /// Whether the levels keep the error that views allow.
+    pub(super) fn is_bounded(&self) -> bool {
+        matches!(self.choice, LevelChoice::By(Criterion::Error) | LevelChoice::Forced(0))
+    }
+
     /// The criterion; [`Criterion::Error`] for a forced level.
     pub(super) fn criterion(&self) -> &Criterion {
         const ERROR: &Criterion = &Criterion::Error;

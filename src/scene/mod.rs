@@ -65,7 +65,10 @@ mod watch;
 pub(crate) mod wgsl;
 
 #[doc(inline)]
-pub use crate::animation::{Wrap, crowd::Local as LocalTransform, root_motion::Taken as RootMotionParts};
+pub use crate::animation::{
+    Range as DistanceRange, Weights as PriorityWeights, Wrap, crowd::Local as LocalTransform,
+    root_motion::Taken as RootMotionParts,
+};
 #[doc(inline)]
 pub use crate::lod::criterion::{Criterion, DistanceTo, SizeOf};
 #[doc(inline)]
@@ -73,7 +76,7 @@ pub use crate::lod::transition::{Pace, Transition};
 #[doc(inline)]
 pub use crate::skinning::bounding_sphere::BoundingSphere;
 #[doc(inline)]
-pub use crate::skinning::{MeshLevels, add_levels, add_levels_with_progress};
+pub use crate::skinning::{MeshLevels, SkeletonTier, add_levels, add_levels_with_progress};
 #[doc(inline)]
 pub use crate::surface::{
     Address, Green, HeightMap, March, Mips, ReliefMaps, ReliefMaterial, ReliefMethod, ReliefOptions,
@@ -99,11 +102,12 @@ pub use crate::terrain::{
 };
 pub use bounds::Bounds;
 pub use camera::{Camera, Depth};
+pub use character::SkeletonStatistics;
 pub use drive::Poses;
 pub use handles::{InstanceId, ObjectId};
 pub use instance_pose::InstancePose;
 pub use level_of_detail::{Culling, LevelChoice, LevelOfDetail, Perceptual};
-pub use options::{CharacterOptions, LayerMask, RootOptions, TerrainStyle};
+pub use options::{BoneGate, CharacterOptions, InfluenceLod, LayerMask, RootOptions, TerrainStyle};
 pub use placement::{ClipTime, Placement, Play};
 pub use poses::PoseBuffers;
 pub use quality::{ErrorBudget, Quality};
@@ -183,6 +187,8 @@ pub struct Scene {
     /// `step` to 0.
     now: f64,
     step: f32,
+    /// The scene's time in the last frame that was staged.
+    last_staged: f64,
     /// Motion history: whether the placements and vertices of the last frame are kept.
     keeps_last: bool,
     /// Whether shading samples a sun's shadow map.
@@ -250,6 +256,7 @@ impl Scene {
             light: Light::default(),
             now: 0.0,
             step: 0.0,
+            last_staged: 0.0,
             keeps_last: false,
             is_shadowed: false,
             frames: 0,

@@ -60,6 +60,17 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         let _ = index;
     }
 
+    /// Whether the kind's settings keep the error that views allow.
+    fn is_bounded(&self) -> bool {
+        true
+    }
+
+    /// Whether an instance needs all bones of its skeleton, so that it cannot have a reduced one.
+    fn needs_skeleton(&self, index: u32) -> bool {
+        let _ = index;
+        false
+    }
+
     // Device resources.
 
     /// Allocates memory for `capacity` instances and resets the state of all instances. If this fails, nothing changes.

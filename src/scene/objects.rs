@@ -108,12 +108,13 @@ impl Scene {
         self.add_character_with(model, capacity, &CharacterOptions::default())
     }
 
-    /// Like [`Scene::add_character`], with options: animation layers above the base layer, and root motion extracted
-    /// from the clips. For a model without clips, the options are ignored.
+    /// Like [`Scene::add_character`], with options: animation layers above the base layer, root motion extracted from
+    /// the clips, and the level of detail of bones. For a model without clips, the options are ignored.
     ///
     /// # Errors
-    /// As for [`Scene::add_character`]; [`InputError`] for more than 7 layers, for a bone that the model does not have, and
-    /// for root motion that cannot be extracted ([`RootMotion::extract`](crate::animation::RootMotion::extract)).
+    /// As for [`Scene::add_character`]; [`InputError`] for more than 7 layers, for a bone that the model does not have, for
+    /// root motion that cannot be extracted ([`RootMotion::extract`](crate::animation::RootMotion::extract)), for a gate,
+    /// influences, a priority or tiers out of range, and for a model whose bones cannot collapse.
     ///
     /// # Examples
     ///
@@ -126,6 +127,7 @@ impl Scene {
     /// let options = CharacterOptions {
     ///     layers: vec![LayerMask::Below("spine"), LayerMask::All], // layers 1 and 2
     ///     root_motion: Some(RootOptions { bone: "hips", taken: RootMotionParts::default() }),
+    ///     ..CharacterOptions::default()
     /// };
     /// let people = scene.add_character_with(model, 100, &options)?;
     /// # Ok(())
@@ -147,7 +149,21 @@ impl Scene {
     /// # Errors
     /// As for [`Scene::add_character`].
     pub async fn add_character_async(&mut self, model: &Model, capacity: usize) -> Result<ObjectId, Error> {
-        let object = self.character(model, capacity, &CharacterOptions::default())?;
+        self.add_character_with_async(model, capacity, &CharacterOptions::default()).await
+    }
+
+    /// Like [`Scene::add_character_with`], but the future completes once the device has reported its errors
+    /// ([`Gpu::check_async`](crate::gpu::Gpu::check_async)). After an error, nothing is added.
+    ///
+    /// # Errors
+    /// As for [`Scene::add_character_with`].
+    pub async fn add_character_with_async(
+        &mut self,
+        model: &Model,
+        capacity: usize,
+        options: &CharacterOptions<'_>,
+    ) -> Result<ObjectId, Error> {
+        let object = self.character(model, capacity, options)?;
         self.add_checked(object).await
     }
 

@@ -10,6 +10,7 @@ use crate::scene::layout::Layout;
 use crate::scene::matrices::{affine_of, placed_model, rows_of};
 use crate::scene::object::Object;
 use crate::scene::placement::Placement;
+use crate::shared::lod::allowed::Allowed;
 use crate::shared::lod::instance::SceneInstance;
 use crate::{Error, InputError};
 
@@ -109,11 +110,23 @@ impl Scene {
     pub fn watch_bones(&mut self, bones: &[InstanceBone<'_>]) -> Result<(), Error> {
         let chosen = bones.iter().map(|of| Ok((of.instance, self.bone(of.instance, of.bone)?)));
         let chosen = chosen.collect::<Result<Vec<_>, InputError>>()?;
+        self.mark_watched(&chosen);
         self.watch = match chosen.is_empty() {
             true => None,
             false => Some(Watch::new(&self.gpu, chosen)?),
         };
         Ok(())
+    }
+
+    /// Lets the instances of watched bones keep their whole skeletons.
+    fn mark_watched(&mut self, chosen: &[(InstanceId, usize)]) {
+        for object in self.objects.iter_mut() {
+            let handle = object.handle;
+            let own = chosen.iter().filter(|(instance, _)| instance.object().number() == handle);
+            let watched = own.map(|(instance, _)| instance.index).collect();
+            let Some(character) = object.character_mut() else { continue };
+            character.watch(watched).into_iter().for_each(|index| object.mark_whole(index));
+        }
     }
 
     /// The watched bones of the last frame whose matrices have arrived; `None` before the first. The call does not
@@ -169,9 +182,10 @@ impl Watch {
             });
             for (at, (matrices, instance, bone, place)) in (0..).zip(copies) {
                 let (matrix, word) = (size_of::<Affine>() as u64, size_of::<f32>() as u64);
+                let allowed = size_of::<Allowed>() as u64;
                 let from = matrix * (instance * matrices.bones + bone) as u64;
                 encoder.copy_buffer_to_buffer(matrices.raw, from, to, BYTES * at, matrix);
-                let from = word * place as u64;
+                let from = allowed * place as u64;
                 encoder.copy_buffer_to_buffer(layout.allowed.raw(), from, to, BYTES * at + matrix, word);
             }
         });

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Quat, Vec3};
 
+use super::parse_character::CharacterDetail;
 use crate::animation::Wrap;
 use crate::scene::{LevelOfDetail, Transition};
 use crate::surface::ReliefShadow;
@@ -27,6 +28,8 @@ pub(super) struct ObjectEntry {
     pub path: String,
     pub source: Source,
     pub kind: EntryKind,
+    /// Level of detail of a character's bones; the default for a mesh.
+    pub detail: CharacterDetail,
     /// Transition of the object's levels of detail; `None` for the scene's transition.
     pub transition: Option<Transition>,
     /// How the object's levels of detail are chosen. With `None`, they are chosen by error.

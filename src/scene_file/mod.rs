@@ -37,6 +37,7 @@ mod entries;
 mod json;
 mod load;
 mod parse;
+mod parse_character;
 mod parse_lod;
 mod parse_object;
 mod scatter;

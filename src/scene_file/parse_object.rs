@@ -8,6 +8,7 @@ use super::entries::{
     BUILT_IN, EntryKind, InstanceEntry, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source, Spot,
 };
 use super::json::{At, COORDINATE, Fields};
+use super::parse_character::{self, CharacterDetail};
 use super::parse_lod::{level_of_detail, transition};
 use crate::InputError;
 use crate::animation::Wrap;
@@ -38,12 +39,13 @@ pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
 
 /// An entry of `characters`.
 pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
-    let fields =
-        at.fields(&["file", "clip", "rate", "start", "wrap", "transition", "lod", "instances", "scatter"])?;
+    let known = ["file", "clip", "rate", "start", "wrap", "transition", "lod", "instances", "scatter"];
+    let fields = at.fields(&[&known[..], &parse_character::FIELDS].concat())?;
     let source = model(&fields)?;
     let all = PlayEntry { clip: None, rate: 1.0, start: 0.0, wrap: Wrap::Loop };
     let kind = EntryKind::Character(play(&fields, &all)?);
-    placed(at, &fields, (source, kind), MAX_CHARACTERS)
+    let detail = parse_character::detail(&fields)?;
+    Ok(ObjectEntry { detail, ..placed(at, &fields, (source, kind), MAX_CHARACTERS)? })
 }
 
 fn placed(
@@ -71,7 +73,8 @@ fn placed(
         let bound = "must be hard: a mesh with a relief has one level of detail";
         return Err(InputError::new(path, "geomorph", bound));
     }
-    Ok(ObjectEntry { path: at.path.clone(), source, kind, transition, level_of_detail, instances, scatter })
+    let (path, detail) = (at.path.clone(), CharacterDetail::default());
+    Ok(ObjectEntry { path, source, kind, detail, transition, level_of_detail, instances, scatter })
 }
 
 /// The model's source, from the field `file`.

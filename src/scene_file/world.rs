@@ -209,7 +209,8 @@ async fn added(scene: &mut Scene, entry: &ObjectEntry, loaded: &Loaded) -> Resul
     let (kind, object) = match (loaded, &entry.kind) {
         (Loaded::Relief(relief), _) => (WorldKind::Relief, scene.add_relief_async(relief, capacity).await),
         (Loaded::Model(model), EntryKind::Character(_)) => {
-            (WorldKind::Character, scene.add_character_async(model, capacity).await)
+            let options = entry.detail.options();
+            (WorldKind::Character, scene.add_character_with_async(model, capacity, &options).await)
         }
         (Loaded::Model(model), _) => (WorldKind::Mesh, scene.add_mesh_async(model, capacity).await),
     };
@@ -217,7 +218,15 @@ async fn added(scene: &mut Scene, entry: &ObjectEntry, loaded: &Loaded) -> Resul
         Loaded::Relief(_) => None,
         Loaded::Model(model) => Some(model.clone()),
     };
-    let object = object.map_err(|error| below(&entry.path, error))?;
+    // The fields of options are fields of the entry.
+    let in_entry = |error: Error| match error {
+        Error::Input(error) => {
+            let path = error.path.strip_prefix("options.").unwrap_or(&error.path).to_owned();
+            Error::Input(InputError { path, ..error })
+        }
+        other => other,
+    };
+    let object = object.map_err(|error| below(&entry.path, in_entry(error)))?;
     Ok(WorldObject { object, kind, name: entry.source.to_string(), model })
 }
 

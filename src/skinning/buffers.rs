@@ -4,6 +4,7 @@
 use glam::UVec4;
 
 use super::character_levels::{level_errors, own_levels};
+pub use super::clusters::Rig;
 use super::clusters::{ClusterLevel, Clusters};
 use crate::asset::Model;
 use crate::asset::mesh::{MAX_LEVELS, Mesh};
@@ -11,6 +12,7 @@ use crate::asset::morph::MorphTarget;
 use crate::asset::transform::rows;
 use crate::gpu::bind::SeenAs;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
+use crate::shared::skinning::palette::skin_bone_word;
 use crate::shared::skinning::select::Dispatched;
 use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::vertex::{Blend, Vertex};
@@ -41,7 +43,7 @@ pub struct MeshBuffers {
     /// Morph deltas, three vectors each: position delta with the target's index as bits in w; normal delta; tangent
     /// delta.
     pub deltas: Buffer<[[f32; 4]; 3]>,
-    /// For each bone of the skin, its index in the skeleton.
+    /// For each bone of the skin, its index in the skeleton, with the skeleton's tier in the highest 8 bits.
     pub bones: Buffer<u32>,
     /// For each bone of the skin, its inverse bind matrix as three rows.
     pub inverse_binds: Buffer<[[f32; 4]; 3]>,
@@ -62,10 +64,20 @@ impl MeshBuffers {
     /// # Errors
     /// [`InputError`] for a mesh that does not match its skin; [`GpuError`] if a buffer cannot be allocated.
     pub fn new(gpu: &Gpu, model: &Model, mesh: &Mesh) -> Result<(Self, Clusters), Error> {
-        let all_bones = model.skeleton.len();
-        let own = own_levels(mesh, &level_errors(&model.meshes));
-        let clusters = Clusters::new(mesh, &model.skins, &model.skeleton)?.with_levels(&own);
-        let skin = &model.skins[mesh.skin];
+        let rig = Rig { skeleton: &model.skeleton, skins: &model.skins, reduced: &[] };
+        Self::of_rig(gpu, &rig, mesh, &own_levels(mesh, &level_errors(&model.meshes)))
+    }
+
+    /// Uploads a mesh that follows a rig. `own` gives the mesh's own level at each level of detail of the character.
+    ///
+    /// # Errors
+    /// The errors of [`MeshBuffers::new`] and [`Clusters::of_rig`].
+    pub fn of_rig(gpu: &Gpu, rig: &Rig<'_>, mesh: &Mesh, own: &[u32]) -> Result<(Self, Clusters), Error> {
+        let Rig { skeleton, skins, .. } = *rig;
+        let clusters = Clusters::of_rig(mesh, rig)?.with_levels(own);
+        let skin = &skins[mesh.skin];
+        let bone = |bone: &u32| skin_bone_word(*bone, skeleton.tier_of(*bone) as u32);
+        let bones: Vec<u32> = skin.bones.iter().map(bone).collect();
         let binds: Vec<_> = skin.inverse_binds.iter().map(rows).collect();
         let (delta_offsets, deltas) = deltas(&mesh.targets, &clusters);
         let buffers = Self {
@@ -77,11 +89,11 @@ impl MeshBuffers {
             masks: Buffer::constant(gpu, "cluster masks", &clusters.masks)?,
             delta_offsets: Buffer::constant(gpu, "morph offsets", &delta_offsets)?,
             deltas: Buffer::constant(gpu, "morph deltas", &deltas)?,
-            bones: Buffer::constant(gpu, "skin bones", &skin.bones)?,
+            bones: Buffer::constant(gpu, "skin bones", &bones)?,
             inverse_binds: Buffer::constant(gpu, "inverse binds", &binds)?,
             mask_words: clusters.mask_words,
             targets: mesh.targets.len(),
-            all_bones,
+            all_bones: skeleton.len(),
             double_sided: mesh.double_sided,
         };
         Ok((buffers, clusters))

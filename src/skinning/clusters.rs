@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 
 use crate::InputError;
 use crate::animation::order::Order;
+use crate::asset::influences::Influences;
 use crate::asset::mesh::Mesh;
 use crate::asset::skeleton::{Skeleton, Skin};
 use crate::shared::skinning::cluster;
@@ -44,21 +45,32 @@ pub struct Clusters {
     /// The levels of detail; level 0 is the full mesh with all vertices. The others are the mesh's own levels
     /// ([`Mesh::levels`]), or, after [`Clusters::with_levels`], the levels of a character.
     pub levels: Vec<ClusterLevel>,
-    /// The influences of all vertices, packed: first two header words for each cluster, then the columns of each
-    /// cluster, [`CLUSTER`] words per column.
+    /// The influences of all vertices, packed: first two header words for each tier of the skeleton and each cluster, then the
+    /// columns of each cluster, [`CLUSTER`] words per column.
     ///
     /// A cluster's header has the index of the first word of its columns, and the largest number of influences per
     /// vertex. The first columns of a cluster hold bones, two per word; the strongest bone is in the lower half of the
     /// first word. The next columns hold the weights of all bones but the strongest, as bits. The strongest weight is 1
     /// minus the sum of the others.
     pub influences: Vec<u32>,
-    /// The set of bones that each cluster follows, in [`Clusters::mask_words`] words per cluster. There is one bit per
+    /// The set of bones that each cluster follows, in [`Clusters::mask_words`] words per tier and cluster. There is one bit per
     /// bone, in the skeleton's [`Order`], as in gates and [`Active::updated_bones`](crate::animation::compact).
     pub masks: Vec<u32>,
     /// Number of 32-bit words in a set of bones: [`Order::words`].
     pub mask_words: usize,
     /// For each cluster, whether morph targets move any of its vertices.
     pub morphs: Vec<bool>,
+}
+
+/// The bones that a mesh's vertices follow: a skeleton of one or several tiers ([`Skeleton::with_tier`]).
+#[derive(Debug, Clone, Copy)]
+pub struct Rig<'a> {
+    /// The bones of all tiers.
+    pub skeleton: &'a Skeleton,
+    /// The skins of the model, with the bones of all tiers.
+    pub skins: &'a [Skin],
+    /// Influences of the mesh's vertices on the bones of tiers 1, 2 …; those on tier 0 are [`Mesh::influences`].
+    pub reduced: &'a [Influences],
 }
 
 impl Clusters {
@@ -68,6 +80,15 @@ impl Clusters {
     /// [`InputError`] if [`Mesh::validate`] refuses the mesh, if its skin does not match the skeleton, or if the skin
     /// has more than [`MAX_SKIN_BONES`] bones.
     pub fn new(mesh: &Mesh, skins: &[Skin], skeleton: &Skeleton) -> Result<Self, InputError> {
+        Self::of_rig(mesh, &Rig { skeleton, skins, reduced: &[] })
+    }
+
+    /// Like [`Clusters::new`], for a skeleton of several tiers.
+    ///
+    /// # Errors
+    /// The errors of [`Clusters::new`]; [`InputError`] for influences that do not match the mesh or the skin.
+    pub fn of_rig(mesh: &Mesh, rig: &Rig<'_>) -> Result<Self, InputError> {
+        let Rig { skeleton, skins, reduced } = *rig;
         mesh.validate(skins)?;
         let skin = &skins[mesh.skin];
         InputError::check_most("skin.bones.len", skin.bones.len(), MAX_SKIN_BONES)?;
@@ -79,15 +100,27 @@ impl Clusters {
         let slot = slots(&order);
         let vertices = vertices_of(mesh);
         let mask_words = bones.words();
-        let clusters = order.chunks(CLUSTER);
+        for (at, influences) in reduced.iter().enumerate() {
+            let path = format!("reduced[{at}]");
+            InputError::check_len(&path, influences.vertices(), mesh.vertices(), "a vertex")?;
+            let bones: Vec<u32> = influences.all().iter().map(|one| one.bone).collect();
+            let bound = format!("must be below {}", skin.bones.len());
+            InputError::check_each(&path, &bones, |bone| (*bone as usize) < skin.bones.len(), bound)?;
+        }
+        let tiers: Vec<&Influences> = std::iter::once(&mesh.influences).chain(reduced).collect();
+        let mask = |(influences, cluster): (&Influences, &[u32])| {
+            mask(influences, skin, &slot_of, cluster, mask_words)
+        };
+        let clusters =
+            tiers.iter().flat_map(|tier| order.chunks(CLUSTER).map(move |cluster| (*tier, cluster)));
         Ok(Self {
             vertices: order.iter().map(|vertex| vertices[*vertex as usize]).collect(),
             uv: order.iter().map(|vertex| mesh.uv[*vertex as usize]).collect(),
             indices: all_triangles(mesh).flatten().map(|index| slot[*index as usize]).collect(),
             levels: levels(mesh, &bands),
-            influences: influences(mesh, &order),
+            influences: influences(&tiers, &order),
             morphs: morphs(mesh, &slot),
-            masks: clusters.flat_map(|cluster| mask(mesh, skin, &slot_of, cluster, mask_words)).collect(),
+            masks: clusters.flat_map(mask).collect(),
             mask_words,
             order,
         })
@@ -179,12 +212,12 @@ fn morphs(mesh: &Mesh, slot: &[u32]) -> Vec<bool> {
     morphs
 }
 
-fn influences(mesh: &Mesh, order: &[u32]) -> Vec<u32> {
+fn influences(tiers: &[&Influences], order: &[u32]) -> Vec<u32> {
     let clusters = order.len().div_ceil(CLUSTER);
-    let mut words = vec![0; 2 * clusters];
-    for (index, cluster) in order.chunks(CLUSTER).enumerate() {
-        let of =
-            |lane: usize| cluster.get(lane).map_or(&[][..], |vertex| mesh.influences.of(*vertex as usize));
+    let mut words = vec![0; 2 * clusters * tiers.len()];
+    let all = tiers.iter().flat_map(|tier| order.chunks(CLUSTER).map(move |cluster| (*tier, cluster)));
+    for (index, (tier, cluster)) in all.enumerate() {
+        let of = |lane: usize| cluster.get(lane).map_or(&[][..], |vertex| tier.of(*vertex as usize));
         let slots = (0..CLUSTER).map(|lane| of(lane).len()).max().unwrap_or(0);
         words[2 * index] = words.len() as u32;
         words[2 * index + 1] = slots as u32;
@@ -200,9 +233,9 @@ fn influences(mesh: &Mesh, order: &[u32]) -> Vec<u32> {
     words
 }
 
-fn mask(mesh: &Mesh, skin: &Skin, slot_of: &[usize], cluster: &[u32], words: usize) -> Vec<u32> {
+fn mask(influences: &Influences, skin: &Skin, slot_of: &[usize], cluster: &[u32], words: usize) -> Vec<u32> {
     let mut mask = vec![0; words];
-    for influence in cluster.iter().flat_map(|vertex| mesh.influences.of(*vertex as usize)) {
+    for influence in cluster.iter().flat_map(|vertex| influences.of(*vertex as usize)) {
         let slot = slot_of[skin.bones[influence.bone as usize] as usize];
         mask[slot / 32] |= 1 << (slot % 32);
     }

@@ -124,8 +124,19 @@ pub fn collapse_bones(model: &Model, options: &CollapseOptions) -> Result<Collap
         materials: model.materials.clone(),
         images: model.images.clone(),
     };
-    let error = measure::error(model, &collapsed, &remap)?;
+    let error = measure::error(model, &collapsed, &remap.kept().collect::<Vec<_>>())?;
     Ok(Collapsed { model: collapsed, remap: remap.indices(), error })
+}
+
+/// The number of bones that never collapse. `options.bones` does not count.
+pub(super) fn fewest_bones(model: &Model, options: &CollapseOptions) -> Result<usize, InputError> {
+    Ok(choice::stays(model, options)?.iter().filter(|stays| **stays).count())
+}
+
+/// The largest distance of a vertex from its position in `model`, measured as for [`CollapseError`]. `reduced` has the same
+/// meshes on another skeleton.
+pub(super) fn vertex_error(model: &Model, reduced: &Model) -> Result<f32, InputError> {
+    Ok(measure::error(model, reduced, &[])?.largest)
 }
 
 /// Moments of every clip: 60 per second, but at most `most` per clip.

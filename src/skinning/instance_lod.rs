@@ -37,10 +37,11 @@ impl FadeRange {
 
 impl InstanceLod {
     /// Full quality: all influences of all vertices.
-    pub const FULL: Self = Self { influence_fade: 0.0, max_influences: MAX_INFLUENCES as u32, mesh_lod: 0 };
+    pub const FULL: Self =
+        Self { influence_fade: 0.0, max_influences: MAX_INFLUENCES as u32, mesh_lod: 0, tier: 0 };
 
     /// No skinning, for an instance that is not visible.
-    pub const UNSEEN: Self = Self { influence_fade: 0.0, max_influences: 0, mesh_lod: 0 };
+    pub const UNSEEN: Self = Self { influence_fade: 0.0, max_influences: 0, mesh_lod: 0, tier: 0 };
 
     /// Full quality, except that each vertex follows at most `most` bones: those with the largest weights.
     ///

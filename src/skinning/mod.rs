@@ -28,6 +28,8 @@ pub mod palette;
 mod pose;
 pub mod select;
 pub mod skin;
+#[doc(hidden)]
+pub mod tiers;
 pub mod vertex;
 
 pub use at_rest::{at_rest, still};
@@ -40,4 +42,5 @@ pub(crate) use levels::add_levels_and_at_rest;
 pub use levels::{MeshLevels, add_levels, add_levels_with_progress};
 pub use merged::{Merged, merged};
 pub use pose::poses_of;
+pub use tiers::SkeletonTier;
 pub use vertex::{Blend, Vertex};

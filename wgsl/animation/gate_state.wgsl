@@ -12,9 +12,13 @@ struct Lod {
     // Weight of this instance's motion relative to other instances, 0 to FULL_WEIGHT, proportional to the instance's size on
     // screen.
     weight: u32,
-    // LOD_HIDDEN, LOD_FORCED or 0. An instance with both flags counts as hidden and is not sampled.
+    // Flags word: LOD_HIDDEN, LOD_FORCED or 0, and the skeleton tier. An instance with both flags counts as hidden and is not
+    // sampled.
     flags: u32,
 }
+
+// Word of `Lod.flags`: the LOD flags, and the index of the skeleton tier whose bones are sampled. Tier 0 is the whole skeleton.
+// packed LodFlags: bits 8, tier 8
 
 // Flag of an instance that is not in view. The instance costs nothing, and is sampled in full when it comes back into view.
 const LOD_HIDDEN: u32 = 1u;

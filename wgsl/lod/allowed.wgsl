@@ -11,6 +11,17 @@ const MAX_ALLOWED: f32 = 1e9;
 // Smallest model scale by which an allowed displacement is divided. Smaller scales count as this one.
 const LEAST_SCALE: f32 = 1e-9;
 
+// Largest error and nearest eye of an instance, over all views of a frame that see it.
+struct Allowed {
+    // Displacement that these views allow, in model units; UNSEEN_ALLOWED if no view sees the instance.
+    displacement: f32,
+    // Distance from the nearest eye to the middle of the bounding sphere, in world units; 0 in a parallel view.
+    distance: f32,
+}
+
+// Displacement that is allowed to an instance that no view of the frame has seen.
+const UNSEEN_ALLOWED: f32 = -1.0;
+
 // Allowed displacement of a sphere in a camera, in world units. If every point inside the sphere is off by at most this
 // distance, no point moves by more than `pixels` on screen. The result is 0 if a part of the sphere may reach the near plane. A
 // sphere behind the camera counts as if it were at the same distance in front. `docs/pixel-bounds.md` has the derivation.

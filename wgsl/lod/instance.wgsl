@@ -13,6 +13,9 @@ const INSTANCE_CASTS = 2u;
 const INSTANCE_CARRIES = 4u;
 // Instance flag: the instance is a mesh that is attached to a bone. Its placement is stored only per view, as rows of a matrix.
 const INSTANCE_FOLLOWS = 8u;
+// Instance flag: the instance is a character that needs all bones of its skeleton, because the host drives bones or layers are
+// blended. It keeps skeleton tier 0.
+const INSTANCE_WHOLE = 16u;
 // Word of `SceneInstance.flags`: the instance flags, and the visibility mask.
 // packed InstanceFlags: bits 16, mask 16
 
@@ -20,8 +23,8 @@ const INSTANCE_FOLLOWS = 8u;
 struct SceneInstance {
     // Cell that contains the instance's position.
     cell: vec3<i32>,
-    // Instance flags (`INSTANCE_ALIVE`, `INSTANCE_CASTS`, `INSTANCE_CARRIES`, `INSTANCE_FOLLOWS`) in the lower 16 bits. The
-    // upper 16 bits are the visibility mask.
+    // Instance flags (`INSTANCE_ALIVE`, `INSTANCE_CASTS`, `INSTANCE_CARRIES`, `INSTANCE_FOLLOWS`, `INSTANCE_WHOLE`) in the lower
+    // 16 bits. The upper 16 bits are the visibility mask.
     flags: u32,
     // Position of the instance relative to the cell's corner, in world units.
     offset: vec3<f32>,

@@ -10,6 +10,8 @@ struct InstanceLod {
     // coarsest of its `Mesh::levels` whose error is at most the n-th of `level_errors`. Larger values than the last level count
     // as the last level.
     mesh_lod: u32,
+    // Tier of the skeleton that vertices follow; 0 is the whole skeleton.
+    tier: u32,
 }
 
 // Largest number of levels of detail of a mesh, the mesh itself included.

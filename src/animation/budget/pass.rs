@@ -49,6 +49,8 @@ impl BudgetPass {
             words: self.table.words,
             stride: self.table.stride,
             budget: self.bones,
+            clips: self.table.clips,
+            tiers: self.table.tiers,
         };
         let words = params.instances * params.words;
         let uniform = Uniform::new(gpu, "budget", &params)?;

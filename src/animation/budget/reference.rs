@@ -17,19 +17,27 @@ pub fn budget(
     clip_clocks: &[ClipClock],
     sampled: &mut [u32],
 ) -> Vec<u32> {
-    let (bones, words) = (table.animated_bones().bones(), table.animated_bones().words());
+    let animated = table.animated_bones();
+    let (bones, words) = (animated.bones(), animated.words());
     let mut chosen = Vec::new();
     let mut ranked: Vec<(u32, usize)> = Vec::new();
     let is_unlimited = budget as usize >= clip_clocks.len() * bones;
     for (instance, (clip_clock, lod)) in clip_clocks.iter().zip(lods).enumerate() {
         let first = instance * bones;
+        let tier = lod.tier as usize;
+        let is_set = |bits: &[u32], slot: usize| bits[slot / 32] >> (slot % 32) & 1 != 0;
         if clip_clock.reason().forces_motion() {
-            chosen.extend(first..first + bones);
+            let all = (0..bones).filter(|slot| is_set(animated.all(tier), *slot));
+            chosen.extend(all.map(|slot| first + slot));
         }
         if clip_clock.reason() != UpdateReason::Free {
             continue;
         }
-        for slot in table.animated_bones().slots(clip_clock.clip) {
+        for slot in animated.slots(tier, clip_clock.clip) {
+            if is_set(animated.always(tier), slot) {
+                chosen.push(first + slot);
+                continue;
+            }
             let missed = missed_by(table, clip_clock, slot, sampled[first + slot]);
             if missed > 0 || is_unlimited {
                 ranked.push((rank_of(missed, lod.weight), first + slot));

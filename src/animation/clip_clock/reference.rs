@@ -8,7 +8,7 @@ use crate::animation::layers::AnimationLayer;
 use crate::animation::lod::{BoneSampling, Lod};
 use crate::asset::keyframe::KeyframeCursor;
 use crate::asset::keyframe::keyframe_cursor;
-use crate::shared::animation::clip_clock::CLIP_HASH_FACTOR;
+use crate::shared::animation::clip_clock::{CLIP_HASH_FACTOR, TIER_SHIFT};
 use crate::shared::animation::gate_state::FRACTION_ONE;
 
 /// Input of [`clip_clocks`]: a crowd at one point in time.
@@ -45,7 +45,8 @@ pub fn clip_clocks(crowd: &PlayedCrowd<'_>, history: &mut [[u32; 4]]) -> Vec<Cli
         let later_cursor = if ahead == 0.0 { cursor } else { at(later) };
         let above = clips_above(layers, index);
         let blended = if above != 0 { BLENDED } else { 0 };
-        let known = [(instance.clip + 1) | blended, above, now.to_bits(), later.to_bits()];
+        let base = (instance.clip + 1) | lods[index].tier << TIER_SHIFT | blended;
+        let known = [base, above, now.to_bits(), later.to_bits()];
         let last = std::mem::replace(&mut history[index], known);
         let sampling = lods[index].sampling;
         let reason = if sampling == BoneSampling::Hidden {

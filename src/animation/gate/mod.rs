@@ -14,6 +14,8 @@ pub mod reference;
 pub use pass::{GateJob, GatePass};
 
 use super::gate_table::{AnimatedBones, BoundTable, ExpectationTable, PriorityTable};
+use super::order::Order;
+use crate::InputError;
 use crate::asset::keyframe::RotationPath;
 
 /// Method that chooses the bones to sample. Each variant contains the table that the method needs.
@@ -86,6 +88,24 @@ impl Gate {
             Self::Bounded(table) => table.animated_bones(),
             Self::Budget { table, .. } => table.animated_bones(),
         }
+    }
+
+    /// Marks bones that the gate never skips: each is sampled in every frame that shows its instance, if the clip moves it. `bones`
+    /// says so for each bone of `order`'s skeleton, by bone index.
+    ///
+    /// # Errors
+    /// [`InputError`] if `order` or `bones` has another number of bones than the gate.
+    pub fn never_skip(&mut self, order: &Order, bones: &[bool]) -> Result<(), InputError> {
+        let table = match self {
+            Self::Off(bones) | Self::Uniform(bones) | Self::Random(bones) => bones,
+            Self::SkipPeriod { table, .. } => table.animated_bones_mut(),
+            Self::Bounded(table) => table.animated_bones_mut(),
+            Self::Budget { table, .. } => table.animated_bones_mut(),
+        };
+        InputError::check_same("order.slots.len", order.slots.len(), table.bones(), "as the gate's bones")?;
+        InputError::check_len("bones", bones.len(), table.bones(), "a bone")?;
+        table.set_always(|slot| bones[order.slots[slot].bone as usize]);
+        Ok(())
     }
 
     /// Rotation path that the gate's motion table was computed for; `None` for gates that do not use motion.

@@ -86,6 +86,8 @@ impl GatePass {
             words: table.words,
             stride: table.stride,
             first_above,
+            clips: table.clips,
+            tiers: table.tiers,
             ticks: 0,
             frame_ticks: 0,
             period,

@@ -65,6 +65,8 @@ struct Word<'a> {
     all: u32,
     /// Mask of the bones that the gate may have to sample.
     candidates: u32,
+    /// Mask of the candidates that no gate skips.
+    always: u32,
 }
 
 /// Splits the bones of one instance into words of 32.
@@ -74,11 +76,12 @@ fn words<'a>(
     lod: &'a Lod,
     clip_clock: &'a ClipClock,
 ) -> impl Iterator<Item = Word<'a>> {
-    bones.of(clip_clock.clip).iter().enumerate().map(move |(word, moving)| {
-        let first = 32 * word;
-        let all = u32::MAX >> (32 - (bones.bones() - first).min(32));
+    let tier = lod.tier as usize;
+    bones.of_tier(tier, clip_clock.clip).iter().enumerate().map(move |(word, moving)| {
+        let all = bones.all(tier)[word];
         let candidates = if clip_clock.reason() == UpdateReason::Blended { all } else { *moving };
-        Word { instance: instance as u32, first, lod, clip_clock, all, candidates }
+        let always = candidates & bones.always(tier)[word];
+        Word { instance: instance as u32, first: 32 * word, lod, clip_clock, all, candidates, always }
     })
 }
 
@@ -96,7 +99,7 @@ fn thinned(
             UpdateReason::Hidden => 0,
             UpdateReason::Forced => word.all,
             _ if lod.omega >= OMEGA_ONE => word.candidates,
-            _ => thin(&word),
+            _ => thin(&word) | word.always,
         }));
     }
     chosen.ahead.resize(chosen.bits.len(), 0);
@@ -181,10 +184,10 @@ fn by_motion(
     sampled: &mut [u32],
     remaining: &mut Remaining<'_>,
 ) -> [u32; 2] {
-    let Word { first, lod, clip_clock, all, candidates, .. } = *word;
+    let Word { first, lod, clip_clock, all, candidates, always, .. } = *word;
     // Accumulated motion describes a single clip, so forced or blended instances cannot use it and sample all bones. If no motion
     // may be missed, all candidates are sampled.
-    let asked = if clip_clock.reason().forces_motion() { all } else { 0 };
+    let asked = if clip_clock.reason().forces_motion() { all } else { always };
     let forced = asked | if lod.allowed == 0 { candidates } else { 0 };
     let [mut active, mut ahead] = [forced, 0];
     for bit in bits_of(candidates | forced) {

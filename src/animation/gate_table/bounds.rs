@@ -70,13 +70,13 @@ impl BoundTable {
         }
         table.motion.fill(&order, set, &all)?;
         for clip in 0..set.clips().len() as u32 {
-            table.write_tree(skeleton, &order, clip);
+            (0..skeleton.tiers()).for_each(|tier| table.write_tree(skeleton, &order, tier, clip));
         }
         Ok(table)
     }
 
-    /// Writes the row of parents of a clip: for each animated slot, the nearest ancestor slot that the clip moves.
-    fn write_tree(&mut self, skeleton: &Skeleton, order: &Order, clip: u32) {
+    /// Writes the row of parents of a clip, for one tier: for each animated slot, the nearest ancestor slot that the clip moves.
+    fn write_tree(&mut self, skeleton: &Skeleton, order: &Order, tier: usize, clip: u32) {
         let slot_of = order.slots_of_bones();
         let parent = |bone: u32| skeleton.bones()[bone as usize].parent;
         let stride = self.motion.stride();
@@ -84,11 +84,11 @@ impl BoundTable {
         let MotionTable { animated_bones, rows, .. } = &mut self.motion;
         let last = animated_bones.last_row(clip) as usize * stride;
         let mut before = None;
-        for slot in animated_bones.slots(clip) {
+        for slot in animated_bones.slots(tier, clip) {
             let bones_above = std::iter::successors(parent(order.slots[slot].bone), |bone| parent(*bone));
             let above = bones_above
                 .map(|bone| slot_of[bone as usize])
-                .find(|slot| animated_bones.contains(clip, *slot));
+                .find(|slot| animated_bones.contains(tier, clip, *slot));
             rows[first + slot][0] = above.map_or(NO_PARENT, |above| above as u32);
             if above.is_none() || above != before {
                 rows[last + slot][1] |= BoneErrorBudget::STARTS;
@@ -103,6 +103,11 @@ impl BoundTable {
     /// Table of the bones that each clip moves.
     pub fn animated_bones(&self) -> &AnimatedBones {
         &self.motion.animated_bones
+    }
+
+    /// Mutable form of [`BoundTable::animated_bones`].
+    pub(crate) fn animated_bones_mut(&mut self) -> &mut AnimatedBones {
+        &mut self.motion.animated_bones
     }
 
     /// Rotation path that the motion was computed for.

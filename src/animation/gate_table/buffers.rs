@@ -15,8 +15,11 @@ pub(crate) struct TableBuffers {
     pub stride: u32,
     /// Number of 32-bit words per instance that hold one bit per bone.
     pub words: u32,
+    /// Number of clips.
+    pub clips: u32,
+    /// Number of skeleton tiers.
+    pub tiers: u32,
     bones: usize,
-    clips: usize,
     /// Rotation path that the motion was computed for; `None` for a table without motion.
     path: Option<RotationPath>,
 }
@@ -53,8 +56,9 @@ impl TableBuffers {
             rows: Buffer::constant(gpu, "gate table", rows)?,
             stride: stride as u32,
             words: bones.words() as u32,
+            clips: bones.clips() as u32,
+            tiers: bones.tiers() as u32,
             bones: bones.bones(),
-            clips: bones.clips(),
             path,
         })
     }
@@ -62,7 +66,7 @@ impl TableBuffers {
     /// Returns an error if the bones, clips or rotation path of `crowd` differ from the table's.
     pub fn check(&self, crowd: &Crowd) -> Result<(), InputError> {
         InputError::check_same("table.bones", self.bones, crowd.bones, "as the crowd's")?;
-        InputError::check_same("table.clips", self.clips, crowd.clips, "as the crowd's")?;
+        InputError::check_same("table.clips", self.clips as usize, crowd.clips, "as the crowd's")?;
         check_path(self.path, crowd.path())
     }
 }

@@ -41,6 +41,11 @@ impl ExpectationTable {
         &self.0.animated_bones
     }
 
+    /// Mutable form of [`ExpectationTable::animated_bones`].
+    pub(crate) fn animated_bones_mut(&mut self) -> &mut AnimatedBones {
+        &mut self.0.animated_bones
+    }
+
     /// Rotation path that the motion was computed for.
     pub fn path(&self) -> RotationPath {
         self.0.path

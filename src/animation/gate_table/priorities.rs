@@ -50,6 +50,11 @@ impl PriorityTable {
         &self.animated_bones
     }
 
+    /// Mutable form of [`PriorityTable::animated_bones`].
+    pub(crate) fn animated_bones_mut(&mut self) -> &mut AnimatedBones {
+        &mut self.animated_bones
+    }
+
     /// Table entries, row by row. Each entry packs four 16-bit priorities.
     pub fn rows(&self) -> &[[u32; 2]] {
         &self.rows

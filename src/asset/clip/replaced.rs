@@ -34,6 +34,14 @@ impl Clip {
         Self::of_stored(&self.name, self.duration, tracks)
     }
 
+    /// Appends the tracks of another clip, for the bones of one more tier of the skeleton
+    /// ([`Skeleton::with_tier`](crate::asset::Skeleton::with_tier)). The other clip's duration and name are ignored.
+    pub(crate) fn with_tier(&self, other: &Self) -> Result<Self, InputError> {
+        let tracks =
+            |clip: &Self| clip.tracks.iter().map(|track| clip.stored_keys(track)).collect::<Vec<_>>();
+        Self::of_stored(&self.name, self.duration, [tracks(self), tracks(other)].concat())
+    }
+
     /// Builds a clip from tracks in stored form, three per bone. A track without times is at rest; its one value is the rest
     /// pose.
     ///

@@ -1,8 +1,10 @@
-//! Divides the allowed displacement of each character instance between bone gates and skinning. Gates may then skip bones, and
-//! skinning may leave out influences.
+//! Sets the level of detail of each character instance for bone gates and for skinning. Gates may then skip bones, and skinning
+//! may leave out influences.
 //!
 //! [`select`](super::select) gives the allowed displacement, in model units. One fraction of it goes to bones that are not
-//! sampled, and one to influences that fade out. The remainder is for levels of detail of the mesh. [`decide`](super::decide)
+//! sampled, and one to influences that fade out. The remainder is for levels of detail of the mesh. A reduced skeleton is used
+//! where its error is at most half of the bones' fraction. Ω ([`Range`](crate::animation::lod::Range)) and the fade by distance
+//! ([`FadeRange`](crate::skinning::instance_lod::FadeRange)) follow from the distance of the nearest eye. [`decide`](super::decide)
 //! gives the finest level that any view draws; this level is skinned. An instance that no view sees is neither sampled nor
 //! skinned.
 
@@ -36,6 +38,24 @@ impl AssignParams {
         }
         if !(0.0..f32::INFINITY).contains(&self.stray) {
             return Err(InputError::new("params.stray", self.stray, "must be at least 0 and finite"));
+        }
+        for (path, value) in [
+            ("params.omega_start", self.omega_start),
+            ("params.omega_rate", self.omega_rate),
+            ("params.fade_start", self.fade_start),
+            ("params.fade_rate", self.fade_rate),
+        ] {
+            if !(0.0..f32::INFINITY).contains(&value) {
+                return Err(InputError::new(path, value, "must be at least 0 and finite"));
+            }
+        }
+        if !(f32::MIN_POSITIVE..f32::INFINITY).contains(&self.full_weight_allowed) {
+            let bound = "must be above 0 and finite";
+            return Err(InputError::new("params.full_weight_allowed", self.full_weight_allowed, bound));
+        }
+        let errors = self.tier_errors.to_array();
+        if errors[0] != 0.0 || !errors.is_sorted() {
+            return Err(InputError::new("params.tier_errors", self.tier_errors, "must ascend from 0"));
         }
         if !(1..=MAX_INFLUENCES as u32).contains(&self.max_influences) {
             let bound = format!("must be in 1..={MAX_INFLUENCES}");

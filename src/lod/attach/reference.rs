@@ -5,6 +5,7 @@ use glam::IVec3;
 use super::{AttachParams, Attachment, KeptBone};
 use crate::asset::Affine;
 use crate::lod::SceneInstance;
+use crate::shared::lod::allowed::Allowed;
 
 /// Transform from an attached mesh to its character's model space: the bone's model matrix times the mesh's offset.
 ///
@@ -21,7 +22,7 @@ pub struct AttachScene<'a> {
     /// All instances of the scene.
     pub instances: &'a [SceneInstance],
     /// Allowed displacement of each instance, in model units; negative if no view sees the instance.
-    pub allowed: &'a [f32],
+    pub allowed: &'a [Allowed],
 }
 
 /// Placement of an attached mesh: transform from mesh space to the world, relative to the corner of `cell`. `local` is the
@@ -40,7 +41,7 @@ pub fn attached(
     let character = (params.first + attachment.character) as usize;
     let instance = &instances[character];
     let ([x, y, z], at) = (instance.axes(), instance.position(cell));
-    if allowed[character] < 0.0 {
+    if allowed[character].displacement < 0.0 {
         return std::array::from_fn(|row| [0.0, 0.0, 0.0, at[row]]);
     }
     let placement = std::array::from_fn(|row| [x[row], y[row], z[row], at[row]]);

@@ -22,7 +22,7 @@ pub use pass::{SelectBuffers, SelectPass};
 
 use super::{LodCamera, SelectView, VIEW_CAMERAS};
 use crate::InputError;
-pub use crate::shared::lod::select::UNSEEN_ALLOWED;
+pub use crate::shared::lod::allowed::{Allowed, UNSEEN_ALLOWED};
 
 impl SelectView {
     /// Checks that the camera count, the mask and the planes are valid.

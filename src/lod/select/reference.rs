@@ -8,10 +8,10 @@ use crate::lod::criterion::{Placed, metric};
 use crate::lod::{
     INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, SceneInstance, SelectView, instance_flags_mask,
 };
-use crate::shared::lod::allowed::MAX_ALLOWED;
+use crate::shared::lod::allowed::{Allowed, MAX_ALLOWED, UNSEEN_ALLOWED};
 use crate::shared::lod::criterion::MAX_METRIC;
 use crate::shared::lod::object::{UNSEEN_METRIC, metric_word, object_flags_never_culled, object_flags_shown};
-use crate::shared::lod::select::{MAX_MOTION, UNSEEN_ALLOWED};
+use crate::shared::lod::select::MAX_MOTION;
 use crate::shared::lod::view::POSITION_SLACK;
 
 /// Result of the selection for an instance that the view sees.
@@ -21,6 +21,8 @@ pub struct Selected {
     pub metric: f32,
     /// Allowed displacement of the instance in this view, in model units.
     pub allowed: f32,
+    /// Distance from the nearest eye to the middle of the bounding sphere, in world units; 0 in a parallel view.
+    pub distance: f32,
     /// Transform from model space to the world, relative to the corner of the view's cell.
     pub placement: Affine,
 }
@@ -79,10 +81,12 @@ pub fn select(
         metric(object, camera, &placed, allowed)
     };
     let least = view.cameras().iter().map(metric_of).fold(MAX_METRIC, f32::min);
+    let distance = |camera: &LodCamera| camera.perspective * center.distance(camera.eye);
+    let distance = view.cameras().iter().map(distance).fold(MAX_METRIC, f32::min);
     let factor = object.metric_scale * perceptual_factor(view, object, instance, last);
     let [x, y, z] = axes;
     let placement = std::array::from_fn(|axis| [x[axis], y[axis], z[axis], at[axis]]);
-    Some(Selected { metric: (factor * least).min(MAX_METRIC), allowed, placement })
+    Some(Selected { metric: (factor * least).min(MAX_METRIC), allowed, distance, placement })
 }
 
 /// Position of a point in the picture, relative to the middle, in units of half the picture's height.
@@ -116,13 +120,16 @@ pub fn word(selected: Option<&Selected>, instance: &SceneInstance) -> u32 {
     selected.map_or(UNSEEN_METRIC, word)
 }
 
-/// Allowed displacement of an instance in the views of a frame, updated by one more view. `before` is the result of the earlier
-/// views; for the first view, it is `None`.
-pub fn merged(before: Option<f32>, selected: Option<&Selected>) -> f32 {
-    match (before.filter(|before| *before >= 0.0), selected) {
-        (Some(before), Some(selected)) => before.min(selected.allowed),
-        (None, Some(selected)) => selected.allowed,
-        (Some(before), None) => before,
-        (None, None) => UNSEEN_ALLOWED,
+/// Allowed displacement and distance of an instance in the views of a frame, updated by one more view. `before` is the result of
+/// the earlier views; for the first view, it is `None`.
+pub fn merged(before: Option<Allowed>, selected: Option<&Selected>) -> Allowed {
+    let before = before.unwrap_or(Allowed { displacement: UNSEEN_ALLOWED, distance: MAX_METRIC });
+    let Some(Selected { allowed, distance, .. }) = selected else { return before };
+    match before.displacement >= 0.0 {
+        true => Allowed {
+            displacement: before.displacement.min(*allowed),
+            distance: before.distance.min(*distance),
+        },
+        false => Allowed { displacement: *allowed, distance: *distance },
     }
 }

@@ -62,6 +62,11 @@ impl Character {
         self.driven.written.contains_key(&index)
     }
 
+    /// Whether bones of this instance are driven.
+    pub fn is_driven(&self, index: u32) -> bool {
+        self.driven.bones.contains_key(&index)
+    }
+
     /// Number of driven bones of all instances.
     pub fn driven_bones(&self) -> usize {
         self.driven.bones.values().map(Vec::len).sum()
@@ -86,7 +91,7 @@ impl Character {
             let (from, to) = (runtime.slots.start as u32, runtime.slots.end as u32);
             let own =
                 bones.range(from..to).map(|(index, bones)| DrivenBones { instance: *index - from, bones });
-            let words = driven_words(&Order::new(&self.merged.model.skeleton), own);
+            let words = driven_words(&Order::new(&self.shared.tiers.skeleton), own);
             runtime.driven = None;
             if !words.is_empty() {
                 let (crowd, frame) = (&runtime.crowd, &runtime.frame);
@@ -106,7 +111,7 @@ impl Character {
         Some(PoseBuffers {
             locals: &runtime.crowd.locals,
             model_matrices: runtime.frame.model_matrices().raw(),
-            bones: self.merged.model.skeleton.len() as u32,
+            bones: self.shared.tiers.skeleton.len() as u32,
             instances: runtime.slots.len() as u32,
             index: (index - runtime.slots.start) as u32,
         })

@@ -118,6 +118,14 @@ impl ObjectKind for Character {
         Ok(Some(self.bounds(&self.pose(instance.index, instance.now)?, instance.place)))
     }
 
+    fn is_bounded(&self) -> bool {
+        self.keeps_bound()
+    }
+
+    fn needs_skeleton(&self, index: u32) -> bool {
+        self.needs_skeleton(index)
+    }
+
     /// Whether the host wrote bones of the instance in the last frame. Written bones may leave the clip's bounding sphere.
     fn may_leave_sphere(&self, index: u32) -> bool {
         self.is_written(index)

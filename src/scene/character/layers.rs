@@ -160,7 +160,7 @@ impl Character {
         self.layers.iter().any(|layer| layer.weights[index as usize].is_heard())
     }
 
-    /// Ends fades that have reached their target weight by scene time `now`. Returns the instances whose base clip changed.
+    /// Ends fades that have reached their target weight by scene time `now`. Returns the instances whose fades ended.
     pub(super) fn end_fades(&mut self, now: f64) -> Vec<u32> {
         let mut changed = Vec::new();
         for layer in &mut self.layers {
@@ -176,8 +176,8 @@ impl Character {
                     self.plays[index as usize] = layer.plays[index as usize];
                     self.changed.add(index, self.plays.len());
                     reached = Weight::default();
-                    changed.push(index);
                 }
+                changed.push(index);
                 layer.weights[index as usize] = reached;
             }
         }

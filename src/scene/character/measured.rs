@@ -7,9 +7,10 @@ use crate::gpu::Gpu;
 use crate::skinning::vertex::Vertex;
 
 impl Character {
-    /// The model matrices of all bones of all instances after the last frame, and the number of bones.
+    /// The model matrices of all bones of all instances after the last frame, and the number of bones of all skeletons. The bones of
+    /// the whole skeleton come first.
     pub fn read_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
-        let bones = self.merged.model.skeleton.len();
+        let bones = self.shared.tiers.skeleton.len();
         let mut all = Vec::with_capacity(bones * self.plays.len());
         for runtime in &self.runtimes {
             all.extend(

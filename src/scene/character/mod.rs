@@ -1,5 +1,6 @@
 //! Characters. The device samples their bones, and morphs and skins their vertices, in as much detail as the views need.
 
+mod detail;
 mod drawn;
 mod driven;
 mod kind;
@@ -11,21 +12,24 @@ mod posed;
 mod provide;
 mod runtime;
 
+use std::collections::BTreeSet;
+
 use crate::Error;
-use crate::animation::{BoundTable, ClipSet, Gate, RootMotion, RotationPath};
-use crate::asset::mesh::bone_radii;
+use crate::animation::{ClipSet, RootMotion};
 use crate::gpu::Gpu;
 use crate::scene::instances::Changed;
 use crate::scene::mesh;
 use crate::scene::object_kind::{Fitted, Replaced};
-use crate::scene::options::{CharacterOptions, bone_of};
+use crate::scene::options::{CharacterOptions, InfluenceLod, bone_of};
 use crate::scene::paging::Held;
 use crate::scene::playing::Playing;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
-use crate::skinning::instance_lod::InstanceLod;
 use crate::skinning::merged::Merged;
-use crate::skinning::{Extent, poses_of};
+use crate::skinning::tiers::Tiers;
+use detail::Detail;
+pub use detail::SkeletonStatistics;
+pub(super) use detail::TICKS;
 use driven::Driven;
 use layers::{CharacterLayer, Reach};
 use runtime::{Runtime, Shared};
@@ -34,10 +38,14 @@ use runtime::{Runtime, Shared};
 #[derive(Debug)]
 pub(super) struct Character {
     merged: Merged,
-    /// Length of one unit of the motion table, in model units. The gate uses this table to decide which bones to sample.
-    unit: f32,
-    /// Largest displacement of a vertex, in model units, per unit of the influence fade λ ([`Extent::stray`]).
-    stray: f32,
+    /// Parameters that assign levels of detail, without the scene's error budget.
+    assign: AssignParams,
+    /// Whether influences fade within the scene's error budget.
+    fades_influences: bool,
+    /// Whether gate and influences keep the error that views allow.
+    keeps_bound: bool,
+    /// Instances whose bones are watched.
+    watched: BTreeSet<u32>,
     /// Radius per bone: the largest distance between the bone and a vertex that follows it, in bone space; `None` without
     /// such a vertex.
     radii: Vec<Option<f32>>,
@@ -76,19 +84,17 @@ impl Character {
     ) -> Result<Self, Error> {
         let motions = options.root_motion.map(|root| root.take(&mut merged.model)).transpose()?;
         let model = &merged.model;
-        let clips: Vec<_> = model.clips.iter().collect();
-        let set = ClipSet::new(&clips)?;
-        let radii = bone_radii(model.skeleton.len(), &model.skins, &model.meshes);
-        let table = BoundTable::new(&model.skeleton, &set, &clips, &radii, RotationPath::default())?;
-        let unit = table.unit();
-        let poses = clips.iter().map(|clip| poses_of(clip)).collect::<Result<Vec<_>, _>>()?;
-        let every: Vec<usize> = (0..clips.len()).collect();
-        let stray = Extent::of_model(model, &every, poses.into_iter().max().unwrap_or(1))?.stray;
-        let spheres = every.iter().map(|clip| BoundingSphere::in_clip(model, *clip)).collect();
+        let mut tiers = Tiers::new(model, &options.tiers, &[]).map_err(|error| error.below("options"))?;
+        let set = ClipSet::new(&tiers.clips.iter().collect::<Vec<_>>())?;
+        let spheres: Vec<_> =
+            (0..model.clips.len()).map(|clip| BoundingSphere::in_clip(model, clip)).collect();
+        let Detail { gate, assign } = Detail::new(options, model, &tiers, &set, spheres[0].radius)?;
         let bone = |name: &str| bone_of(model, name);
         let layers = CharacterLayer::of_masks(model, &options.layers, bone, capacity)?;
         let masks = layers.iter().map(|layer| layer.mask.clone()).collect();
-        let shared = Shared::new(gpu, model, (set, Gate::Bounded(table)), masks)?;
+        tiers.clips.clear();
+        let radii = tiers.bone_radii[..model.skeleton.len()].to_vec();
+        let shared = Shared::new(gpu, model, (set, gate), (tiers, masks))?;
         let follows = radii.iter().zip(followed(model));
         let radii: Vec<_> = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
         let reach = (!layers.is_empty()).then(|| Reach::new(model, &radii));
@@ -99,8 +105,10 @@ impl Character {
         let (epoch, is_memory_short) = (0.0, false);
         Ok(Self {
             merged,
-            unit,
-            stray,
+            assign,
+            fades_influences: options.influences == InfluenceLod::Bounded,
+            keeps_bound: options.gate.is_bounded() && options.influences.is_bounded(),
+            watched: BTreeSet::new(),
             radii,
             spheres,
             plays,
@@ -143,12 +151,9 @@ impl Character {
         for (runtime, chunk) in self.runtimes.iter_mut().zip(fitted.chunks) {
             let params = AssignParams {
                 first: chunk.range.first,
-                instances: 0,
-                max_influences: InstanceLod::FULL.max_influences,
                 bone_fraction: fitted.budget.bones,
-                influence_fraction: fitted.budget.influences,
-                unit: self.unit,
-                stray: self.stray,
+                influence_fraction: if self.fades_influences { fitted.budget.influences } else { 0.0 },
+                ..self.assign
             };
             runtime.fit(gpu, fitted.layout, fitted.assign, params)?;
         }

@@ -80,7 +80,7 @@ impl Character {
         let index = index as usize;
         let runtime = self.runtimes.iter().find(|runtime| runtime.slots.contains(&index))?;
         let raw = runtime.frame.model_matrices().raw();
-        let matrices = CharacterMatrices { raw, bones: self.merged.model.skeleton.len() };
+        let matrices = CharacterMatrices { raw, bones: self.shared.tiers.skeleton.len() };
         Some((matrices, index - runtime.slots.start))
     }
 

@@ -1,5 +1,6 @@
 //! Device data of a chunk: a group of a character's instances.
 
+use std::iter::repeat;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use crate::animation::compact::CompactJob;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::frame::GatedFrame;
 use crate::animation::{AnimationLayer, ClipSet, Gate, Instance, Wrap};
-use crate::asset::Model;
+use crate::asset::{Influences, Mesh, Model};
 use crate::gpu::{Gpu, GpuError, Job, Uniform};
 use crate::lod::assign::{AssignBuffers, AssignPass};
 use crate::scene::layout::Layout;
@@ -16,16 +17,20 @@ use crate::scene::mesh;
 use crate::scene::paging::Paging;
 use crate::scene::stage::Stage;
 use crate::shared::lod::assign::AssignParams;
-use crate::skinning::buffers::MeshBuffers;
+use crate::skinning::buffers::{MeshBuffers, Rig};
 use crate::skinning::clusters::Clusters;
 use crate::skinning::morph_weights::{MorphWeightsJob, MorphWeightsPass, WeightSet};
 use crate::skinning::paged::{PagedSkin, PagedSkinOptions};
+use crate::skinning::tiers::Tiers;
+use crate::skinning::{level_errors, own_levels};
 
 /// Device data that all chunks of a character share.
 #[derive(Debug)]
 pub(in crate::scene) struct Shared {
     pub set: ClipSet,
     pub gate: Gate,
+    /// The tiers of the skeleton, without clips: `set` has them.
+    pub tiers: Tiers,
     /// Bone mask of each layer above the base; `None` = all bones.
     masks: Vec<Option<Vec<f32>>>,
     clips: ClipBuffers,
@@ -38,21 +43,28 @@ impl Shared {
         gpu: &Gpu,
         model: &Model,
         (set, gate): (ClipSet, Gate),
-        masks: Vec<Option<Vec<f32>>>,
+        (tiers, masks): (Tiers, Vec<Option<Vec<f32>>>),
     ) -> Result<Self, Error> {
         let clips = ClipBuffers::new(gpu, &set)?;
-        let uploaded = |mesh| {
+        let own = |mesh: &Mesh| own_levels(mesh, &level_errors(&model.meshes));
+        let uploaded = |(mesh, reduced): (&Mesh, &Vec<Influences>)| {
             mesh::check_binding(gpu, mesh)?;
-            let (buffers, clusters) = MeshBuffers::new(gpu, model, mesh)?;
+            let rig = Rig { skeleton: &tiers.skeleton, skins: &tiers.skins, reduced };
+            let (buffers, clusters) = MeshBuffers::of_rig(gpu, &rig, mesh, &own(mesh))?;
             Ok((buffers, Arc::new(clusters)))
         };
-        let meshes = model.meshes.iter().map(uploaded).collect::<Result<_, Error>>()?;
-        Ok(Self { set, gate, masks, clips, meshes })
+        let meshes = model.meshes.iter().zip(&tiers.reduced).map(uploaded).collect::<Result<_, Error>>()?;
+        // Layers are blended on the whole skeleton only.
+        let widened =
+            |mask: Vec<f32>| mask.into_iter().chain(repeat(1.0)).take(tiers.skeleton.len()).collect();
+        let masks = masks.into_iter().map(|mask| mask.map(widened)).collect();
+        Ok(Self { set, gate, tiers, masks, clips, meshes })
     }
 
     /// Creates the shared data of the same character on another device.
     pub fn on(&self, gpu: &Gpu, model: &Model) -> Result<Self, Error> {
-        Self::new(gpu, model, (self.set.clone(), self.gate.clone()), self.masks.clone())
+        let made = (self.set.clone(), self.gate.clone());
+        Self::new(gpu, model, made, (self.tiers.clone(), self.masks.clone()))
     }
 }
 
@@ -118,7 +130,7 @@ impl Runtime {
         };
         let layers: Vec<AnimationLayer> = shared.masks.iter().map(layer).collect();
         let crowd = Crowd::layered(gpu, &shared.set, &vec![rest; count], &layers)?;
-        let frame = GatedFrame::new(gpu, &model.skeleton, &shared.clips, &crowd, &shared.gate)?;
+        let frame = GatedFrame::new(gpu, &shared.tiers.skeleton, &shared.clips, &crowd, &shared.gate)?;
         let every: Vec<usize> = (0..model.clips.len()).collect();
         let (mut skins, mut pagings, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for (mesh, (buffers, clusters)) in model.meshes.iter().zip(&shared.meshes) {

@@ -5,7 +5,7 @@ use crate::gpu::Gpu;
 use crate::scene::instances;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object_kind::{MakeOn, OnDevice};
-use crate::shared::lod::instance::INSTANCE_CARRIES;
+use crate::shared::lod::instance::{INSTANCE_CARRIES, INSTANCE_WHOLE};
 use crate::{Error, InputError};
 
 impl Object {
@@ -48,10 +48,20 @@ impl Object {
         self.instances.change_all();
     }
 
-    /// Updates the bounding sphere of an instance after its clip or its layers changed.
+    /// Updates the bounding sphere of an instance after its clip or its layers changed, and whether it needs its whole skeleton.
     pub(in crate::scene) fn bound_again(&mut self, index: u32) {
         if let Some(sphere) = self.kind.sphere_of(index) {
             self.instances.change(index, |instance| instances::bound(instance, &sphere));
+        }
+        self.mark_whole(index);
+    }
+
+    /// Updates whether an instance needs its whole skeleton.
+    pub(in crate::scene) fn mark_whole(&mut self, index: u32) {
+        let whole = if self.kind.needs_skeleton(index) { INSTANCE_WHOLE } else { 0 };
+        if self.instances.all()[index as usize].flags & INSTANCE_WHOLE != whole {
+            self.instances
+                .change(index, |instance| instance.flags = instance.flags & !INSTANCE_WHOLE | whole);
         }
     }
 
@@ -59,8 +69,9 @@ impl Object {
     pub(in crate::scene) fn settle(&mut self, now: f64) {
         for index in self.kind.settle(now) {
             // A character that carries an attached mesh keeps its larger sphere until it plays another clip.
-            if self.instances.all()[index as usize].flags & INSTANCE_CARRIES == 0 {
-                self.bound_again(index);
+            match self.instances.all()[index as usize].flags & INSTANCE_CARRIES {
+                0 => self.bound_again(index),
+                _ => self.mark_whole(index),
             }
         }
     }

@@ -174,6 +174,7 @@ impl Counted {
             bias: entry.level_of_detail.largest_factor(),
             rank: entry.rank_on_device(),
             fades: entry.level_of_detail.transition.fades(),
+            is_bounded: entry.level_of_detail.is_bounded() && entry.kind.is_bounded(),
         };
         Self { objects: objects.each().map(counted).collect() }
     }

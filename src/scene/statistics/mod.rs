@@ -66,7 +66,8 @@ pub struct ViewStatistics {
     pub frame: u64,
     /// Upper bound of the error of all drawn instances, in pixels. It is the limit of the view's
     /// [`Quality`](crate::scene::Quality), unless an object's levels of detail were coarser. An object's levels may be
-    /// coarser because of a budget, the object's own settings, or a lack of memory ([`Scene::lod_bias`]).
+    /// coarser because of a budget, the object's own settings, or a lack of memory ([`Scene::lod_bias`]). It is infinite if the
+    /// bound of any object is.
     pub pixels: f32,
     /// The effect of the view's budget of triangles; `None` if the view has no budget.
     pub budget: Option<BudgetStatistics>,
@@ -91,7 +92,9 @@ pub struct BudgetStatistics {
 pub struct ObjectStatistics {
     /// The object.
     pub object: ObjectId,
-    /// Upper bound of the error of the object's instances, in pixels.
+    /// Upper bound of the error of the object's instances, in pixels. It is infinite if the object's settings bound no error: levels
+    /// of detail that another criterion than [`Criterion::Error`](crate::scene::Criterion::Error) chooses, and gates and influences
+    /// that do not depend on the error ([`CharacterOptions`](crate::scene::CharacterOptions)).
     pub pixels: f32,
     /// One entry per level of detail, the finest first.
     pub levels: Vec<LevelStatistics>,

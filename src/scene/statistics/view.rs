@@ -80,7 +80,8 @@ impl ViewCounts {
                 let coarser = about.lod_bias.get(at).copied().unwrap_or(1.0);
                 let coarser = coarser * counted.bias * state.factor(counted.rank);
                 let factor = 1.0 + counted.mesh_fraction * (coarser - 1.0).max(0.0);
-                let pixels = coarser_pixels(about.pixels, factor, about.focal);
+                let bound = coarser_pixels(about.pixels, factor, about.focal);
+                let pixels = if counted.is_bounded { bound } else { f32::INFINITY };
                 let levels = (0..counted.levels).map(|level| counted.level(level, &draws)).collect();
                 ObjectStatistics { object: counted.object, pixels, levels }
             })

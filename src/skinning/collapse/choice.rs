@@ -216,7 +216,7 @@ fn difference(a: DAffine3, b: DAffine3) -> (DMat3, DVec3) {
 
 /// For each bone, whether it never collapses. These are roots, the uppermost bones that a clip moves, end effectors,
 /// and bones kept by name.
-fn stays(model: &Model, options: &CollapseOptions) -> Result<Vec<bool>, InputError> {
+pub(super) fn stays(model: &Model, options: &CollapseOptions) -> Result<Vec<bool>, InputError> {
     let bones = model.skeleton.bones();
     let mut stays: Vec<bool> = bones.iter().map(|bone| bone.parent.is_none()).collect();
     let moves = |bone: usize| {

@@ -3,7 +3,6 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::choice::Remap;
 use super::{CollapseError, looked_at};
 use crate::InputError;
 use crate::asset::{Affine, Mesh, Model};
@@ -17,14 +16,14 @@ struct Off {
     squares: f64,
 }
 
-/// Compares both models 60 times a second in every clip, or at rest if there are no clips.
-pub(super) fn error(model: &Model, collapsed: &Model, remap: &Remap) -> Result<CollapseError, InputError> {
+/// Compares both models 60 times a second in every clip, or at rest if there are no clips. `kept` are the bones of `model` that
+/// `collapsed` has, in order.
+pub(super) fn error(model: &Model, collapsed: &Model, kept: &[usize]) -> Result<CollapseError, InputError> {
     let mut moments = looked_at(model, usize::MAX)?;
     if moments.is_empty() {
         moments.push(Moment::Rest);
     }
-    let kept: Vec<usize> = remap.kept().collect();
-    let off: Vec<Off> = moments.par_iter().map(|moment| off(model, collapsed, &kept, *moment)).collect();
+    let off: Vec<Off> = moments.par_iter().map(|moment| off(model, collapsed, kept, *moment)).collect();
     let vertices: usize = model.meshes.iter().map(Mesh::vertices).sum();
     let squares: f64 = off.iter().map(|off| off.squares).sum();
     let largest = |of: fn(&Off) -> f64| off.iter().map(of).fold(0.0, f64::max) as f32;

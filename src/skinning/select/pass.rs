@@ -16,9 +16,9 @@ pub struct ClusterSelectBuffers {
     /// [`Active::updated_bones`](crate::animation::active::Active::updated_bones) here. If a bone is set, all bones
     /// below it must also be set.
     pub updated_bones: Buffer<u32>,
-    /// The state of each instance in the previous frame, in 4 + [`MeshBuffers::targets`] words. The words are:
-    /// influence fade (as bits), largest number of influences, level of detail, visibility, and the weights of the
-    /// morph targets (as bits).
+    /// The state of each instance in the previous frame, in 5 + [`MeshBuffers::targets`] words. The words are:
+    /// influence fade (as bits), largest number of influences, level of detail, skeleton tier, visibility, and the
+    /// weights of the morph targets (as bits).
     ///
     /// The visibility word is 0 for an invisible instance, 1 for an instance that has just become visible, and 2 for an
     /// instance that was also visible in the previous frame. All words are 0 at first, so the first frame skins

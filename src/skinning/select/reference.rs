@@ -35,8 +35,8 @@ impl Skinned {
 }
 
 /// The parts of a level of detail that determine a vertex's influences, as bits.
-fn bits(instance_lod: &InstanceLod) -> [u32; 2] {
-    [instance_lod.influence_fade.to_bits(), instance_lod.max_influences]
+fn bits(instance_lod: &InstanceLod) -> [u32; 3] {
+    [instance_lod.influence_fade.to_bits(), instance_lod.max_influences, instance_lod.tier]
 }
 
 /// The clusters to skin, as ascending numbers `cluster · instances + instance`. Visible instances at their level of
@@ -57,7 +57,8 @@ pub fn select(clusters: &Clusters, now: &Now<'_>, last: &[Skinned]) -> Vec<u32> 
         if instance_lod.max_influences == 0 || is_beyond(instance_lod.mesh_lod) {
             return false;
         }
-        let mask = &clusters.masks[cluster * words..][..words];
+        let of_tier = instance_lod.tier as usize * clusters.len() + cluster;
+        let mask = &clusters.masks[of_tier * words..][..words];
         let updated_bones = &now.updated_bones[instance * words..][..words];
         let targets = last.weights.len();
         let weights = now.weights[instance * targets..][..targets].iter().zip(&last.weights);

@@ -8,7 +8,7 @@ use relievo::ops::animation::lod::OMEGA_ONE;
 use relievo::ops::animation::order::Order;
 use relievo::ops::animation::priority::{Priorities, USER_DEFAULT};
 use relievo::ops::animation::{
-    AnimatedBones, BoneSampling, BoundTable, ClipSet, ExpectationTable, Gate, Lod, PriorityTable, Projection,
+    AnimatedBones, BoundTable, ClipSet, ExpectationTable, Gate, Lod, PriorityTable, Projection,
 };
 
 use crate::measure::gates::{GateMode, PATH, TICKS};
@@ -134,7 +134,7 @@ impl<'a> Stage<'a> {
                 _ => 0,
             };
             let weight = (65535.0 * nearest / depth(origin)).round().clamp(1.0, 65535.0) as u32;
-            Lod { omega: self.options.range.omega(distance), allowed, weight, sampling: BoneSampling::Gated }
+            Lod { omega: self.options.range.omega(distance), allowed, weight, ..Lod::FULL }
         };
         placements.origins.iter().map(lod).collect()
     }

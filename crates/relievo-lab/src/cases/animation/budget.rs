@@ -3,6 +3,7 @@
 use relievo::Error;
 use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::Buffer;
+use relievo::ops::animation::Gate;
 use relievo::ops::animation::active::Active;
 use relievo::ops::animation::budget::BudgetPass;
 use relievo::ops::animation::budget::reference::budget;
@@ -15,7 +16,7 @@ use relievo::ops::animation::order::Order;
 
 use crate::cases::animation::gate::random_state;
 use crate::cases::animation::scene::{CROWDS, Scene};
-use crate::cases::animation::{Draw, SIZES, random_clips, random_crowd};
+use crate::cases::animation::{Draw, SIZES, random_clips, tiered_crowd};
 use crate::cases::measure;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Bench, Cases};
@@ -29,14 +30,19 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     for (case, [bones, count]) in SIZES.into_iter().chain([[5, 1000]]).enumerate() {
         let case = case as u32;
-        let (skeleton, set, instances) = random_crowd(case, bones, count)?;
+        let (skeleton, set, instances) = tiered_crowd(case, bones, count)?;
         let clips = random_clips(case, &skeleton, 3)?;
         let clips: Vec<_> = clips.iter().collect();
         let crowd = Crowd::new(gpu, &set, &instances)?;
         let bone_radii = vec![0.5; bones];
-        let table = ExpectationTable::new(&skeleton, &set, &clips, &bone_radii, RotationPath::Slerp)?;
-        let mut state = GateState::new(gpu, &crowd)?;
         let order = Order::new(&skeleton);
+        let table = ExpectationTable::new(&skeleton, &set, &clips, &bone_radii, RotationPath::Slerp)?;
+        let mut gate = Gate::Budget { table, bones: u32::MAX };
+        if case % 3 == 1 {
+            gate.never_skip(&order, &(0..bones).map(|bone| bone % 4 == 1).collect::<Vec<_>>())?;
+        }
+        let Gate::Budget { table, .. } = gate else { continue };
+        let mut state = GateState::new(gpu, &crowd)?;
         let mut active = Active::new(gpu, &order, &crowd)?;
         let output = Poisoned::<u32>::new(gpu, 2 * count * order.words())?;
         active.bits = output.buffer.clone();
@@ -49,7 +55,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let pairs = (bones * count) as u32;
         for (frame, most) in [pairs, pairs / 2, 0, pairs / 3 + 1, pairs - 1, u32::MAX].into_iter().enumerate()
         {
-            let (mut lods, clip_clocks) = random_state(&mut draw, &set, count, frame == 0);
+            let (mut lods, clip_clocks) = random_state(&mut draw, (&set, &order), count, frame == 0);
             let weight = |draw: &mut Draw| draw.word() >> (16 + draw.word() % 17).min(31);
             lods.iter_mut()
                 .for_each(|lod| lod.weight = if frame % 2 == 0 { 65535 } else { weight(&mut draw) });

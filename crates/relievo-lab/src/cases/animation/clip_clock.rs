@@ -51,7 +51,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let lods: Vec<Lod> = (0..count)
                 .map(|_| match frame {
                     0 => Lod::FULL,
-                    _ => Lod { sampling: choose(&mut draw), ..Lod::FULL },
+                    _ => Lod { sampling: choose(&mut draw), tier: draw.word() % 8 / 7, ..Lod::FULL },
                 })
                 .collect();
             for instance in &mut instances {

@@ -19,7 +19,7 @@ use relievo::ops::animation::order::Order;
 use relievo::ops::animation::priority::{Priorities, USER_DEFAULT, Weights};
 
 use crate::cases::animation::scene::{CROWDS, Scene};
-use crate::cases::animation::{Draw, SIZES, random_clips, random_crowd};
+use crate::cases::animation::{Draw, SIZES, random_clips, tiered_crowd};
 use crate::cases::measure;
 use crate::harness::poison::Poisoned;
 use crate::harness::{Bench, Cases};
@@ -33,11 +33,15 @@ use crate::harness::{Bench, Cases};
 pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     for (case, [bones, count]) in SIZES.into_iter().enumerate() {
         let case = case as u32;
-        let (skeleton, set, instances) = random_crowd(case, bones, count)?;
+        let (skeleton, set, instances) = tiered_crowd(case, bones, count)?;
         let clips = random_clips(case, &skeleton, 3)?;
         let crowd = Crowd::new(cases.gpu, &set, &instances)?;
-        for gate in gates(&skeleton, &set, &clips.iter().collect::<Vec<_>>())? {
-            add(cases, case, &gate, &Order::new(&skeleton), &set, &crowd).await?;
+        let order = Order::new(&skeleton);
+        for mut gate in gates(&skeleton, &set, &clips.iter().collect::<Vec<_>>())? {
+            if case % 3 == 1 {
+                gate.never_skip(&order, &(0..bones).map(|bone| bone % 4 == 1).collect::<Vec<_>>())?;
+            }
+            add(cases, case, &gate, &order, &set, &crowd).await?;
         }
     }
     Ok(())
@@ -83,7 +87,7 @@ async fn add(
     let mut sampled = vec![0; crowd.pairs()];
     sums.buffer.write(gpu, &sampled)?;
     for (number, ticks) in [0, 70_000, u32::MAX - 1000, 800].into_iter().enumerate() {
-        let (lods, clip_clocks) = random_state(&mut draw, set, count, number == 0);
+        let (lods, clip_clocks) = random_state(&mut draw, (set, order), count, number == 0);
         state.write_lods(gpu, &lods)?;
         state.clip_clocks.write(gpu, &clip_clocks)?;
         let frame = Frame {
@@ -104,16 +108,18 @@ async fn add(
     Ok(())
 }
 
-/// Random levels of detail and clip clocks of a frame; in the first frame all are forced.
+/// Random levels of detail and clip clocks of a frame, for a crowd with these clips and this order of bones. In the first frame all
+/// are forced.
 pub(crate) fn random_state(
     draw: &mut Draw,
-    set: &ClipSet,
+    (set, order): (&ClipSet, &Order),
     count: usize,
     is_first: bool,
 ) -> (Vec<Lod>, Vec<ClipClock>) {
     let lod = |draw: &mut Draw| Lod {
         omega: [0, draw.word() % OMEGA_ONE, OMEGA_ONE - 1, OMEGA_ONE][draw.word() as usize % 4],
         allowed: draw.word() >> (draw.word() % 32),
+        tier: order.tiers[draw.word() as usize % order.tiers.len()],
         ..Lod::FULL
     };
     let clip_clock = |draw: &mut Draw| {

@@ -167,6 +167,33 @@ pub fn random_crowd(
     Ok((skeleton, set, instances))
 }
 
+/// The crowd of [`random_crowd`], with a skeleton of two tiers in odd cases.
+///
+/// # Errors
+/// None in practice.
+pub(crate) fn tiered_crowd(
+    case: u32,
+    bones: usize,
+    instances: usize,
+) -> Result<(Skeleton, ClipSet, Vec<Instance>), InputError> {
+    let skeleton = tiered_skeleton(case, bones)?;
+    let clips = random_clips(case, &skeleton, 3)?;
+    let set = ClipSet::new(&clips.iter().collect::<Vec<_>>())?;
+    let instances = random_instances(case, &set, instances);
+    Ok((skeleton, set, instances))
+}
+
+/// A random skeleton; in odd cases with a second tier, which has half of the bones.
+///
+/// # Errors
+/// None in practice.
+pub(crate) fn tiered_skeleton(case: u32, bones: usize) -> Result<Skeleton, InputError> {
+    if bones < 2 || case.is_multiple_of(2) {
+        return random_skeleton(case, bones);
+    }
+    random_skeleton(case, bones - bones / 2)?.with_tier(&random_skeleton(case + 1, bones / 2)?)
+}
+
 /// Numbers of bones and instances around every workgroup boundary.
 pub(crate) const SIZES: [[usize; 2]; 16] = [
     [1, 1],

@@ -10,6 +10,7 @@ use relievo::ops::lod::attach::reference::{AttachScene, attached, last_local, lo
 use relievo::ops::lod::attach::{
     ATTACH_BOUND, AttachBuffers, AttachParams, AttachPass, Attachment, KeptBone, NO_MESH,
 };
+use relievo::ops::lod::select::Allowed;
 use relievo::ops::lod::{SceneInstance, SelectView};
 
 use crate::cases::animation::Draw;
@@ -35,7 +36,7 @@ struct Case {
     attachments: Vec<Attachment>,
     instances: Vec<SceneInstance>,
     last_instances: Vec<SceneInstance>,
-    allowed: Vec<f32>,
+    allowed: Vec<Allowed>,
     model_matrices: Vec<Affine>,
     kept: Vec<[KeptBone; 2]>,
 }
@@ -72,8 +73,10 @@ impl Case {
         let mut draw = Draw::new(case ^ 0xa77a);
         let count = INSTANCES as usize;
         let [instances, last_instances] = [case, case ^ 0x1a57].map(|seed| random_instances(seed, count));
-        let allowed =
-            (0..INSTANCES).map(|_| if draw.word().is_multiple_of(3) { -1.0 } else { 0.5 }).collect();
+        let displacement = |draw: &mut Draw| if draw.word().is_multiple_of(3) { -1.0 } else { 0.5 };
+        let allowed = (0..INSTANCES)
+            .map(|_| Allowed { displacement: displacement(&mut draw), distance: 9.0 })
+            .collect();
         let characters = INSTANCES - FIRST;
         let mut affine = || [0; 3].map(|_| [0; 4].map(|_| 2.0 * draw.signed()));
         let model_matrices: Vec<Affine> = (0..characters * BONES).map(|_| affine()).collect();
@@ -160,7 +163,7 @@ impl Case {
     fn is_kept(&self, found: &[[KeptBone; 2]]) -> bool {
         let mut expected = self.kept.clone();
         for (at, attachment) in self.there() {
-            let is_seen = self.allowed[(FIRST + attachment.character) as usize] >= 0.0;
+            let is_seen = self.allowed[(FIRST + attachment.character) as usize].displacement >= 0.0;
             if self.params.first_last != 0 && is_seen {
                 let (frame, key) = (self.params.frame, attachment.key);
                 let rows = self.locals(at)[0];
@@ -269,7 +272,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
                 last_frame: 0,
             },
             attachments: (0..count).map(attachment).collect(),
-            allowed: vec![0.5; instances.len()],
+            allowed: vec![Allowed { displacement: 0.5, distance: 9.0 }; instances.len()],
             model_matrices: vec![AFFINE_IDENTITY; (count * MEASURED_BONES) as usize],
             last_instances: instances.clone(),
             instances,
@@ -317,7 +320,9 @@ mod tests {
         let case = Case::random(3, 65, Some([8, 7]));
         let placements = right(&case);
         assert!(case.judged(CELL, &placements).holds);
-        let is_seen = |attachment: &Attachment| case.allowed[(FIRST + attachment.character) as usize] >= 0.0;
+        let is_seen = |attachment: &Attachment| {
+            case.allowed[(FIRST + attachment.character) as usize].displacement >= 0.0
+        };
         let [seen, unseen] = [true, false].map(|seen| {
             let found = case.there().find(|(_, attachment)| is_seen(attachment) == seen);
             found.expect("some").1.mesh as usize
@@ -347,7 +352,7 @@ mod tests {
         let case = Case::random(3, 65, Some([9, 8]));
         let mut kept = case.kept.clone();
         for (at, attachment) in case.there() {
-            if case.allowed[(FIRST + attachment.character) as usize] >= 0.0 {
+            if case.allowed[(FIRST + attachment.character) as usize].displacement >= 0.0 {
                 kept[at][1] =
                     KeptBone { rows: case.locals(at)[0], frame: 9, key: attachment.key, ..kept[at][1] };
             }

@@ -15,9 +15,10 @@ use relievo::asset::{Influence, Influences, Mesh, MeshLevel, Model, MorphTarget}
 use relievo::gpu::Gpu;
 use relievo::ops::animation::local_to_model::reference::{affine, product};
 use relievo::ops::skinning::buffers::{MeshBuffers, SkinnedCrowd};
-use relievo::ops::skinning::clusters::Clusters;
+use relievo::ops::skinning::clusters::{Clusters, Rig};
 use relievo::ops::skinning::instance_lod::InstanceLod;
 use relievo::ops::skinning::vertex::{Blend, Vertex};
+use relievo::ops::skinning::{level_errors, own_levels};
 use relievo::{Error, InputError};
 
 use crate::cases::animation::{Draw, random_skeleton};
@@ -79,6 +80,29 @@ pub(crate) fn random_model(case: u32, shape: Shape) -> Result<Model, InputError>
     mesh.validate(std::slice::from_ref(&skin))?;
     let (clips, materials, images) = (vec![], vec![], vec![]);
     Ok(Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images })
+}
+
+/// Influences of the mesh on one more tier of the skeleton in odd cases, and none in even cases.
+///
+/// # Errors
+/// None in practice.
+pub(crate) fn random_tiers(case: u32, model: &Model, shape: Shape) -> Result<Vec<Influences>, InputError> {
+    let mut draw = Draw::new(case ^ 0x71e5);
+    (0..case % 2).map(|_| influences(&mut draw, shape, model.skins[0].bones.len())).collect()
+}
+
+/// Uploads the mesh of a random model with its tiers.
+///
+/// # Errors
+/// What the device reports.
+pub(crate) fn uploaded(
+    gpu: &Gpu,
+    model: &Model,
+    reduced: &[Influences],
+) -> Result<(MeshBuffers, Clusters), Error> {
+    let rig = Rig { skeleton: &model.skeleton, skins: &model.skins, reduced };
+    let own = own_levels(&model.meshes[0], &level_errors(&model.meshes));
+    MeshBuffers::of_rig(gpu, &rig, &model.meshes[0], &own)
 }
 
 /// All vertices but at most two belong to a triangle.
@@ -165,8 +189,8 @@ pub(crate) fn random_matrices(case: u32, bones: usize, instances: usize) -> Vec<
 }
 
 /// Full, truncated, fading and unseen InstanceLods in turn, half of them at coarse levels, which the mesh may
-/// not have.
-pub(crate) fn random_instance_lods(case: u32, instances: usize) -> Vec<InstanceLod> {
+/// not have. Their tiers are below `tiers`.
+pub(crate) fn random_instance_lods(case: u32, instances: usize, tiers: u32) -> Vec<InstanceLod> {
     let mut draw = Draw::new(case ^ 0xfade);
     let instance_lod = |instance: usize, draw: &mut Draw| match (instance as u32 + case) % 5 {
         0 => InstanceLod::FULL,
@@ -177,7 +201,8 @@ pub(crate) fn random_instance_lods(case: u32, instances: usize) -> Vec<InstanceL
     };
     let levelled = |instance| {
         let level = [0, 0, 0, 0, 1, 2, 3, 15, u32::MAX][draw.word() as usize % 9];
-        InstanceLod { mesh_lod: level, ..instance_lod(instance, &mut draw) }
+        let instance_lod = instance_lod(instance, &mut draw);
+        InstanceLod { mesh_lod: level, tier: draw.word() % tiers, ..instance_lod }
     };
     (0..instances).map(levelled).collect()
 }

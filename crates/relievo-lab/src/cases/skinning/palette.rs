@@ -9,6 +9,7 @@ use relievo::ops::skinning::palette::reference::{palette, palette_for};
 use relievo::ops::skinning::palette::{PALETTE_BOUND, Palette, PalettePass};
 use relievo::ops::skinning::vertex::Blend;
 
+use crate::cases::animation::tiered_skeleton;
 use crate::cases::measure;
 use crate::cases::skinning::{BONES, CROWDS, SHAPES, Scene, poisoned, random_matrices, random_model};
 use crate::harness::poison::Poisoned;
@@ -24,8 +25,9 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let gpu = cases.gpu;
     let pass = PalettePass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES) {
-        let model = random_model(case, shape)?;
-        let skin = &model.skins[0];
+        let mut model = random_model(case, shape)?;
+        model.skeleton = tiered_skeleton(case, shape.bones)?;
+        let (skin, tiers) = (&model.skins[0], model.skeleton.tiers() as u32);
         for (instances, blend) in [(3, Blend::Linear), (7, Blend::DualQuaternion)] {
             let matrices = random_matrices(case, shape.bones, instances);
             let model_matrices = ModelMatrices::new(&Buffer::from_slice(gpu, "model matrices", &matrices)?);
@@ -33,6 +35,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let mut crowd = SkinnedCrowd::new(gpu, &mesh, instances, blend)?;
             let output = Poisoned::<[f32; 4]>::new(gpu, crowd.palette.len())?;
             crowd.palette = output.buffer.clone();
+            let lod = |instance: usize| InstanceLod { tier: instance as u32 % tiers, ..InstanceLod::FULL };
+            crowd.instance_lods.write(gpu, &(0..instances).map(lod).collect::<Vec<_>>())?;
             crowd.instance_lods.write_at(gpu, 1, &[InstanceLod::UNSEEN])?;
             let job = pass.prepare(gpu, &mesh, &model_matrices, &crowd)?;
             gpu.submit("verify", |encoder| job.record(encoder))?;
@@ -46,6 +50,13 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let largest = expected.as_flattened().iter().fold(1.0, |a: f32, b| a.max(b.abs()));
             let each = expected.len() / instances;
             expected[each..2 * each].fill(poisoned());
+            // Bones of another tier are left out.
+            for (at, rows) in expected.chunks_mut(each / skin.bones.len()).enumerate() {
+                let (instance, bone) = (at / skin.bones.len(), skin.bones[at % skin.bones.len()]);
+                if model.skeleton.tier_of(bone) != instance % tiers as usize {
+                    rows.fill(poisoned());
+                }
+            }
             let name = format!("{} of {} bones × {instances}, {blend:?}", skin.bones.len(), shape.bones);
             let near = |actual: &[[f32; 4]]| {
                 let turned = (blend != Blend::Linear).then(|| same_side(actual, &expected));

@@ -12,7 +12,9 @@ use relievo::{Error, InputError};
 
 use crate::cases::animation::Draw;
 use crate::cases::measure;
-use crate::cases::skinning::{CROWDS, SHAPES, Scene, Shape, random_instance_lods, random_model, seen_of};
+use crate::cases::skinning::{
+    CROWDS, SHAPES, Scene, Shape, random_instance_lods, random_model, random_tiers, seen_of, uploaded,
+};
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Bench, Cases, compare};
@@ -65,7 +67,7 @@ impl Frame {
                 let level = |old: &InstanceLod| InstanceLod { mesh_lod: draw.word() % 5, ..*old };
                 self.instance_lods.iter().map(level).collect()
             }
-            _ if is_other => random_instance_lods(case + fraction, instances),
+            _ if is_other => random_instance_lods(case + fraction, instances, 1 + case % 2),
             _ => self.instance_lods.clone(),
         };
         // Every third weight changes, and all of them while no instance is seen.
@@ -89,7 +91,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     let pass = ClusterSelectPass::new(gpu)?;
     for (case, shape) in (0..).zip(SHAPES) {
         let model = model(case, shape)?;
-        let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
+        let (mesh, clusters) = uploaded(gpu, &model, &random_tiers(case, &model, shape)?)?;
         let instances = 1 + 29 * (case as usize % 3);
         let crowd = SkinnedCrowd::new(gpu, &mesh, instances, Blend::Linear)?;
         let mut buffers = ClusterSelectBuffers::new(gpu, &mesh, &crowd)?;
@@ -189,9 +191,10 @@ fn listed(actual: &[u32], dispatched: &[u32], expected: &[u32]) -> Comparison {
 
 fn words_of(last: &[Skinned]) -> Vec<u32> {
     let words = |last: &Skinned| {
-        let InstanceLod { influence_fade: fade, max_influences: most, mesh_lod: level } = last.instance_lod;
+        let InstanceLod { influence_fade: fade, max_influences: most, mesh_lod: level, tier } =
+            last.instance_lod;
         let weights = last.weights.iter().map(|weight| weight.to_bits());
-        [fade.to_bits(), most, level, last.seen].into_iter().chain(weights).collect::<Vec<_>>()
+        [fade.to_bits(), most, level, tier, last.seen].into_iter().chain(weights).collect::<Vec<_>>()
     };
     last.iter().flat_map(words).collect()
 }

@@ -1,7 +1,9 @@
 //! Parity and benchmark cases of `kernels/skinning/skin.wgsl`.
 
+use std::iter;
+
 use relievo::Error;
-use relievo::asset::Model;
+use relievo::asset::Influences;
 use relievo::asset::mesh::MeshLevel;
 use relievo::asset::transform::{Affine, rows};
 use relievo::gpu::{Buffer, Gpu};
@@ -20,7 +22,7 @@ use relievo::ops::skinning::vertex::{Blend, Vertex};
 
 use crate::cases::skinning::{
     CROWDS, RING, SHAPES, Scene, Shape, flat, poisoned, random_instance_lods, random_matrices, random_model,
-    seen_of, tube,
+    random_tiers, seen_of, tube, uploaded,
 };
 use crate::cases::terrain::copy_of;
 use crate::harness::compare::Comparison;
@@ -78,9 +80,11 @@ struct Case {
 impl Case {
     fn new(gpu: &Gpu, case: u32, shape: Shape, blend: Blend) -> Result<Self, Error> {
         let model = random_model(case, shape)?;
-        let (mesh, clusters) = MeshBuffers::new(gpu, &model, &model.meshes[0])?;
+        let tiers = random_tiers(case, &model, shape)?;
+        let (mesh, clusters) = uploaded(gpu, &model, &tiers)?;
         let mut crowd = SkinnedCrowd::new(gpu, &mesh, INSTANCES, blend)?;
-        let instance_lods = random_instance_lods(case, INSTANCES);
+        let instance_lods = random_instance_lods(case, INSTANCES, 1 + tiers.len() as u32);
+        let tiers: Vec<&Influences> = iter::once(&model.meshes[0].influences).chain(&tiers).collect();
         crowd.instance_lods.write(gpu, &instance_lods)?;
         let matrices = random_matrices(case, shape.bones, INSTANCES);
         let mut vectors: Vec<[f32; 4]> = Vec::new();
@@ -96,7 +100,12 @@ impl Case {
                 (0..shape.targets).map(|target| 0.5 - 0.25 * (target + instance) as f32).collect();
             let vertices = morph(&model.meshes[0], &weights);
             placed.extend(clusters.order.iter().map(|vertex| vertices[*vertex as usize]));
-            expected.extend(expect(&model, (&vertices, &clusters), &palette, instance_lods[instance]));
+            expected.extend(expect(
+                tiers[instance_lods[instance].tier as usize],
+                (&vertices, &clusters),
+                &palette,
+                instance_lods[instance],
+            ));
         }
         crowd.palette = Buffer::from_slice(gpu, "palette", &vectors)?;
         if shape.targets > 0 {
@@ -239,12 +248,11 @@ impl Case {
 
 /// The reference's vertices, each with its own bounds; see [`SKIN_BOUND`].
 fn expect(
-    model: &Model,
+    influences: &Influences,
     (vertices, clusters): (&[Vertex], &Clusters),
     palette: &Palette,
     instance_lod: InstanceLod,
 ) -> Vec<Expected> {
-    let influences = &model.meshes[0].influences;
     let mut skinned = vec![poisoned(); vertices.len()];
     skin_seen(&mut skinned, SkinnedMesh { vertices, influences, clusters }, palette, instance_lod);
     if instance_lod == InstanceLod::UNSEEN {

@@ -6,7 +6,7 @@ use relievo::asset::Affine;
 use relievo::gpu::{Buffer, Gpu, GpuError, Uniform};
 use relievo::ops::lod::allowed::allowed_by;
 use relievo::ops::lod::select::reference::{depth_inside, is_shown, placed_sphere, select};
-use relievo::ops::lod::select::{SelectBuffers, SelectPass, UNSEEN_ALLOWED};
+use relievo::ops::lod::select::{Allowed, SelectBuffers, SelectPass, UNSEEN_ALLOWED};
 use relievo::ops::lod::{BLOCK, LodCamera, LodObject, SceneInstance, SelectView};
 use relievo::shared::lod::criterion::{
     CRITERION_BOX, CRITERION_DISTANCE, CRITERION_ERROR, CRITERION_NEAREST, MAX_METRIC,
@@ -87,7 +87,7 @@ impl Scene {
 
 /// The outputs on the device.
 struct Outputs {
-    allowed: Poisoned<f32>,
+    allowed: Poisoned<Allowed>,
     metrics: Poisoned<u32>,
     placements: Poisoned<Affine>,
 }
@@ -95,7 +95,7 @@ struct Outputs {
 /// What the kernel wrote.
 #[derive(Clone, PartialEq, Default)]
 struct Found {
-    allowed: Vec<f32>,
+    allowed: Vec<Allowed>,
     metrics: Vec<u32>,
     placements: Vec<Affine>,
 }
@@ -148,8 +148,8 @@ enum State {
     Untouched,
     /// No view has seen the instance.
     Unseen,
-    /// It lies between these.
-    Within(f32, f32),
+    /// Displacement and distance lie between these.
+    Within([f32; 2], [f32; 2]),
 }
 
 /// What may be found of an instance, whichever way rounding goes.
@@ -158,6 +158,7 @@ struct Range {
     may_be_seen: bool,
     metric: [f32; 2],
     allowed: [f32; 2],
+    distance: [f32; 2],
 }
 
 impl Range {
@@ -174,6 +175,8 @@ impl Range {
         let [less, more] =
             [radius + slack, radius - slack].map(|radius| allowed_by(view.cameras(), center, radius, scale));
         let allowed = [less * (1.0 - FORMULA), more * (1.0 + FORMULA)];
+        let eye = |camera: &LodCamera| camera.perspective * center.distance(camera.eye);
+        let distance = view.cameras().iter().map(eye).fold(MAX_METRIC, f32::min);
         let is_shown = is_shown(view, object, instance);
         let is_culled = object_flags_never_culled(object.flags) == 0;
         let never = SelectView { planes: [Vec4::W; 6], ..*view };
@@ -209,6 +212,7 @@ impl Range {
             may_be_unseen: !is_shown || is_culled && depth_inside(view, center, radius - slack) < 0.0,
             metric,
             allowed,
+            distance: [distance - slack, distance + slack],
         }
     }
 
@@ -321,22 +325,28 @@ impl Found {
         let mut judgements = Vec::with_capacity(self.allowed.len());
         for (index, allowed) in self.allowed.iter().enumerate() {
             if let Some(object) = scene.object_of(view, index) {
-                let range = Range::of(view, object, &scene.instances[index], None).allowed;
+                let Range { allowed, distance, .. } = Range::of(view, object, &scene.instances[index], None);
+                let [low, high] = [0, 1].map(|end| [allowed[end], distance[end]]);
+                let less = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].min(b[1])];
                 let before = if view.is_first == 0 { state[index] } else { State::Unseen };
                 state[index] = match (before, self.is_seen(scene, view, index)) {
                     (before, false) => before,
-                    (State::Within(low, high), _) => State::Within(low.min(range[0]), high.min(range[1])),
-                    _ => State::Within(range[0], range[1]),
+                    (State::Within(l, h), _) => State::Within(less(l, low), less(h, high)),
+                    _ => State::Within(low, high),
                 };
             }
             judgements.push(match state[index] {
-                State::Untouched => judgement(allowed.to_bits() == POISON, false),
-                State::Unseen => judgement(*allowed == UNSEEN_ALLOWED, false),
-                State::Within(low, high) => judgement((low..=high).contains(allowed), high > 1.01 * low),
+                State::Untouched => judgement(allowed.displacement.to_bits() == POISON, false),
+                State::Unseen => judgement(allowed.displacement == UNSEEN_ALLOWED, false),
+                State::Within(low, high) => {
+                    let is_within = (low[0]..=high[0]).contains(&allowed.displacement)
+                        && (low[1]..=high[1]).contains(&allowed.distance);
+                    judgement(is_within, high[0] > 1.01 * low[0])
+                }
             });
         }
         each(&judgements, "wrong displacements", 4.0 * MAY_TOUCH, |at| {
-            format!("{} instead of {:?} of instance {at}", self.allowed[at], state[at])
+            format!("{:?} instead of {:?} of instance {at}", self.allowed[at], state[at])
         })
     }
 }

@@ -5,7 +5,7 @@ use relievo::ops::lod::select::reference::{merged, word};
 use crate::cases::lod::select::*;
 
 /// What the reference writes.
-fn right(scene: &Scene, view: &SelectView, allowed: &[f32]) -> Found {
+fn right(scene: &Scene, view: &SelectView, allowed: &[Allowed]) -> Found {
     let count = scene.instances.len();
     let placements = last_placements(&scene.instances);
     let decisions = last_decisions(count);
@@ -26,6 +26,10 @@ fn right(scene: &Scene, view: &SelectView, allowed: &[f32]) -> Found {
     found
 }
 
+fn untouched() -> Allowed {
+    Allowed { displacement: f32::from_bits(POISON), distance: f32::from_bits(POISON) }
+}
+
 fn scene_and_view() -> (Scene, SelectView) {
     let [(_, view), ..] = frame().expect("valid");
     (Scene::new(7, &[3, 2]), SelectView { blocks: 7, ..view })
@@ -42,7 +46,7 @@ fn faults(scene: &Scene, view: &SelectView, found: &Found) -> Vec<&'static str> 
 fn what_is_wrong_of_one_instance_is_seen() {
     let (scene, view) = scene_and_view();
     let count = scene.instances.len();
-    let right = right(&scene, &view, &vec![f32::from_bits(POISON); count]);
+    let right = right(&scene, &view, &vec![untouched(); count]);
     assert_eq!(faults(&scene, &view, &right), Vec::<&str>::new());
     let own = |index: &usize| scene.object_of(&view, *index).is_some();
     let first = |is: &dyn Fn(u32) -> bool| {
@@ -63,9 +67,10 @@ fn what_is_wrong_of_one_instance_is_seen() {
     assert_eq!(with(&|found| found.placements[seen][1][3] += 1e-3), ["placements"]);
     assert_eq!(with(&|found| found.placements[seen][0][0] = f32::NAN), ["placements"]);
     assert_eq!(with(&|found| found.placements[unseen][0][0] += 1.0), ["placements"]);
-    assert_eq!(with(&|found| found.allowed[seen] *= 1.02), ["allowed"]);
-    assert_eq!(with(&|found| found.allowed[unseen] = 0.0), ["allowed"]);
-    assert_eq!(with(&|found| found.allowed[foreign] = -1.0), ["allowed"]);
+    assert_eq!(with(&|found| found.allowed[seen].displacement *= 1.02), ["allowed"]);
+    assert_eq!(with(&|found| found.allowed[seen].distance += 0.1), ["allowed"]);
+    assert_eq!(with(&|found| found.allowed[unseen].displacement = 0.0), ["allowed"]);
+    assert_eq!(with(&|found| found.allowed[foreign].displacement = -1.0), ["allowed"]);
 }
 
 /// A second view must keep what the first one allows where that is less, and where it does not see the instance.
@@ -77,7 +82,7 @@ fn a_view_that_forgets_the_one_before_is_seen() {
     second.cameras[0].pixels *= 3.0;
     second.planes[1].w -= 40.0;
     let count = scene.instances.len();
-    let poison = vec![f32::from_bits(POISON); count];
+    let poison = vec![untouched(); count];
     let before = right(&scene, &first, &poison);
     let compared = |found: &Found| {
         let mut state = vec![State::Untouched; count];
@@ -111,7 +116,7 @@ fn one_at_an_edge_may_go_either_way_and_few_may_be() {
         };
     };
     edge(&mut scene.instances[own[0]]);
-    let poison = vec![f32::from_bits(POISON); scene.instances.len()];
+    let poison = vec![untouched(); scene.instances.len()];
     let one = right(&scene, &view, &poison);
     let touching = one.compared_metrics(&scene, &view).spread.expect("given").touching;
     assert_eq!(touching, 1);
