@@ -14,7 +14,7 @@ const MAX_UNITS: f32 = 1073741760.0;
 const MAX_TIERS: u32 = 4u;
 // Largest error of a skeleton tier, as a fraction of the displacement that bones may use. The rest is for bones that the gate
 // skips.
-const TIER_FRACTION: f32 = 0.5;
+const TIER_FRACTION: f32 = 0.25;
 // An instance changes to a coarser tier only if the tier's error is below this fraction of its limit (hysteresis).
 const TIER_HYSTERESIS: f32 = 0.8;
 

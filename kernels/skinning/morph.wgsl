@@ -8,7 +8,7 @@ import package::wgsl::skinning::page::NO_PAGE;
 override PAGED: bool = false;
 
 // Number of words of an `InstanceLod`.
-const LOD_WORDS: u32 = 3u;
+const LOD_WORDS: u32 = 4u;
 
 // Parameters of the kernel `skinning/morph`.
 struct MorphParams {

@@ -16,7 +16,7 @@ pub mod model;
 pub mod morph;
 pub mod obj;
 pub mod skeleton;
-pub mod tangents;
+pub(crate) mod tangents;
 pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};

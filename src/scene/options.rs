@@ -32,13 +32,14 @@ pub struct CharacterOptions<'a> {
     pub priorities: BTreeMap<&'a str, f32>,
     /// Reduced skeletons for distant instances, at most 3, each with fewer bones than the one before. Empty by default.
     ///
-    /// An instance uses the coarsest skeleton whose error is at most half of the displacement that bones may have
+    /// An instance uses the coarsest skeleton whose error is at most a quarter of the displacement that bones may have
     /// ([`ErrorBudget::bones`](crate::scene::ErrorBudget::bones)). Bones, clips and influences change together. Each skeleton takes
     /// memory for its bones in every instance; [`Scene::skeletons`](crate::scene::Scene::skeletons) returns it.
     ///
     /// An instance keeps the whole skeleton while it carries an attached mesh, while bones of it are driven
     /// ([`Scene::drive`](crate::scene::Scene::drive)), and while layers are blended over its clip. Poses and bones on the host are
-    /// always those of the whole skeleton. In buffers of matrices, the matrices of an instance with a reduced skeleton are outdated.
+    /// always those of the whole skeleton. In [`PoseBuffers`](crate::scene::PoseBuffers), the bones of an instance with a reduced
+    /// skeleton are outdated.
     pub tiers: Vec<SkeletonTier>,
 }
 

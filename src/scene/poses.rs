@@ -19,7 +19,7 @@ pub struct PoseBuffers<'a> {
     /// The model matrix of each bone in the previous frame: the transform from bone space to model space. A matrix has
     /// three rows, each a `vec4<f32>`, from index 3 · (instance · bones + bone) on. Use: read-only storage.
     pub model_matrices: &'a wgpu::Buffer,
-    /// Number of bones of the skeleton.
+    /// Number of bones of all of the character's skeletons. Those of the whole skeleton come first.
     pub bones: u32,
     /// Number of instances that fit into the buffers.
     pub instances: u32,

@@ -12,6 +12,7 @@ use crate::asset::morph::MorphTarget;
 use crate::asset::transform::rows;
 use crate::gpu::bind::SeenAs;
 use crate::gpu::{Buffer, Gpu, GpuError, rows_of_workgroups};
+use crate::shared::skinning::morph::LOD_WORDS;
 use crate::shared::skinning::palette::skin_bone_word;
 use crate::shared::skinning::select::Dispatched;
 use crate::skinning::instance_lod::InstanceLod;
@@ -21,6 +22,7 @@ use crate::{Error, InputError};
 impl SeenAs<[f32; 2]> for Vertex {}
 impl SeenAs<Dispatched> for u32 {}
 impl SeenAs<u32> for InstanceLod {}
+const _: () = assert!(size_of::<InstanceLod>() == size_of::<u32>() * LOD_WORDS as usize);
 
 /// A mesh and its skin in GPU buffers. Vertices are grouped in clusters, in the order of [`Clusters::order`].
 #[derive(Debug, Clone)]

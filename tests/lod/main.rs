@@ -1,6 +1,7 @@
 //! Choosing and changing levels of detail in a scene: criteria, hysteresis, transitions and budgets.
 
 mod budgets;
+mod characters;
 mod criteria;
 mod linear;
 mod promise;

@@ -51,8 +51,8 @@ const LAYOUTS: [(&str, Layout); 2] = [("grid", Layout::Grid), ("random", Layout:
 /// With --image (GPU only), the command also draws the crowd as a scene, and writes DIR/crowd_<distance>.png: its last
 /// frame, textured and lit, 1920 × 1080 pixels; meshes without a material are clay of two colours. A scene permits a
 /// number of pixels by which anything may be off: the sum of those of --gate bounded, --skinning bounded:PIXELS and
-/// --mesh bounded:PIXELS, which it divides among bones, influences and triangles in proportion. Other gates are
-/// measured without a picture. report.json also has the times of computing, of drawing and of whole frames, within
+/// --mesh bounded:PIXELS, which it divides among bones, influences and triangles in proportion. Other gates take no
+/// pixels, and bound no error; random is measured without a picture. report.json also has the times of computing, of drawing and of whole frames, within
 /// these pixels and in full detail, what was drawn, and how far it lies from its place.
 ///
 /// A crowd that is drawn needs a clip of at most an hour, which is sampled 60 times a second, and at least 4 frames.
@@ -132,11 +132,11 @@ pub struct Crowd {
     /// For --pareto: the size on screen of the model's largest extent, in pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 100.0, allow_hyphen_values = true)]
     tall: f32,
-    /// Draws the crowd as a scene, and times the whole frame. The gate must be off or bounded.
+    /// Draws the crowd as a scene, and times the whole frame. The gate must not be random.
     #[arg(long, conflicts_with = "pareto")]
     image: bool,
-    /// Draws the crowd as scenes with and without level of detail in animation, skinning and meshes. The gate must be
-    /// off or bounded.
+    /// Draws the crowd as scenes with and without level of detail in animation, skinning and meshes. The gate must not
+    /// be random.
     #[arg(long, conflicts_with_all = ["pareto", "image"])]
     scene: bool,
     /// Influences per vertex: all; or as few as move no vertex by more than PIXELS. Default: full; with --scene

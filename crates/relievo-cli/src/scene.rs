@@ -161,9 +161,11 @@ impl Scene {
         let triangles: u64 =
             objects.iter().flat_map(|object| &object.levels).map(|level| level.triangles).sum();
         let seconds = start.elapsed().as_secs_f64();
-        let note = format!(
-            "{triangles} triangles, nothing more than {pixels} px off; {seconds:.3} s with loading and compiling"
-        );
+        let promise = match objects.iter().all(|object| object.pixels.is_some()) {
+            true => format!("nothing more than {pixels} px off"),
+            false => "not all within bounds".to_owned(),
+        };
+        let note = format!("{triangles} triangles, {promise}; {seconds:.3} s with loading and compiling");
         Ok(Shown::new(picture, note))
     }
 

@@ -84,8 +84,8 @@ fn gate(a: &Crowd) -> Result<GateMode, InputError> {
 
 fn drawn(a: &Crowd) -> Result<DrawnOptions, InputError> {
     if a.is_drawn() {
-        if let Some(gate) = a.gate.filter(|gate| ![GateName::Off, GateName::Bounded].contains(gate)) {
-            let bound = "must be off or bounded with --image and --scene, which draw a scene; leave them out to measure it";
+        if let Some(gate) = a.gate.filter(|gate| *gate == GateName::Random) {
+            let bound = "must be another gate with --image and --scene, which draw a scene; leave them out to measure it";
             return Err(InputError::new("gate", gate.as_str(), bound));
         }
         if a.backend == Backend::Cpu {

@@ -2,6 +2,8 @@
 //! `tests/readme.rs` compares the lines between the two marks of a function with those of the document.
 #![allow(dead_code, unused_variables, reason = "they are compiled, not run")]
 
+use std::collections::BTreeMap;
+
 use relievo::Error;
 use relievo::asset::Model;
 use relievo::gpu::{Gpu, Options};
@@ -14,8 +16,8 @@ use relievo::ops::terrain::height::{HeightBatch, HeightPass};
 use relievo::ops::terrain::window::Windows;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
-    Camera, Criterion, DistanceTo, LevelChoice, LevelOfDetail, ObjectId, Pace, Placement, Quality, Scene,
-    TerrainSource, Transition, View,
+    Camera, CharacterOptions, Criterion, DistanceTo, LevelChoice, LevelOfDetail, ObjectId, Pace, Placement,
+    Quality, Scene, SkeletonTier, TerrainSource, Transition, View,
 };
 use relievo_samples::creature;
 
@@ -161,6 +163,23 @@ fn levels((mut scene, mut view): (Scene, View), mut renderer: Renderer, tree: Ob
     scene.set_level_of_detail(tree, &level_of_detail)?;
     renderer.prepare(&scene)?;                                            // a new transition has pipelines of its own
     view.set_quality(Quality { triangles: Some(500_000), ..Quality::pixels(1.0) })?;
+    // end
+    Ok(())
+}
+
+/// A character with reduced skeletons and a hand that is always sampled.
+#[rustfmt::skip]
+fn characters((mut scene, model): (Scene, Model)) -> Result<(), Error> {
+    // begin docs/characters.md
+    let options = CharacterOptions {
+        tiers: SkeletonTier::DEFAULT.to_vec(),                            // half of the bones, a quarter, rigid parts
+        priorities: BTreeMap::from([("hand_left", 1.0)]),                 // sampled in every frame
+        ..CharacterOptions::default()
+    };
+    let crowd = scene.add_character_with(&model, 100, &options)?;
+    for skeleton in scene.skeletons(crowd)? {
+        println!("{} bones, {} off, {} bytes", skeleton.bones, skeleton.error, skeleton.bytes);
+    }
     // end
     Ok(())
 }

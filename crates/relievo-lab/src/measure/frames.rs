@@ -30,6 +30,9 @@ pub struct ObjectReport {
 pub struct ObjectFrame {
     /// [`Scene::lod_bias`](relievo::scene::Scene::lod_bias).
     pub lod_bias: f32,
+    /// Upper bound of the error in pixels; `None` if the object's settings bound no error
+    /// ([`ObjectStatistics::pixels`](relievo::scene::ObjectStatistics::pixels)).
+    pub pixels: Option<f32>,
     /// What was drawn, level by level; of a split picture, what both views drew.
     pub levels: Vec<DrawnLevel>,
     /// Number of bones that were interpolated; missing unless it is a character.
@@ -223,10 +226,15 @@ fn drawn(player: &mut Player) -> Result<Vec<ObjectFrame>, Error> {
         }
         sums
     };
+    let bound = |object: ObjectId| {
+        let all = seen.iter().flat_map(|view| &view.objects).filter(|own| own.object == object);
+        all.map(|own| own.pixels).fold(0.0, f32::max)
+    };
     let of = |object: &WorldObject| {
         let own = characters.iter().flatten().find(|own| own.object == object.object);
         Ok(ObjectFrame {
             lod_bias: world.scene.lod_bias(object.object)?,
+            pixels: Some(bound(object.object)).filter(|pixels| pixels.is_finite()),
             levels: levels(object.object),
             bones: own.map(|own| own.bones),
             clusters: own.map(|own| own.clusters),

@@ -115,8 +115,7 @@ impl SceneRow {
 /// does not move.
 ///
 /// # Errors
-/// [`InputError`](relievo::InputError) for options out of their ranges, a gate that is neither [`GateMode::Off`](crate::measure::GateMode::Off) nor
-/// [`GateMode::Bounded`](crate::measure::GateMode::Bounded), fewer than 4 frames, a clip that the model lacks or that lasts more than an hour, and a model
+/// [`InputError`](relievo::InputError) for options out of their ranges, for [`GateMode::Random`](crate::measure::GateMode::Random), which no scene has, fewer than 4 frames, a clip that the model lacks or that lasts more than an hour, and a model
 /// without meshes; errors of the device.
 pub fn scene(
     gpu: &Gpu,
@@ -153,10 +152,10 @@ pub fn scene(
 
 /// The ways to draw in the order of [`SceneRow::NAMES`].
 fn ways(all: &Parts, drawn: &DrawnOptions) -> Vec<Parts> {
-    let Parts { bones, influences, mesh } = *all;
+    let Parts { bones, influences, mesh, gate } = *all;
     let mut ways = vec![
         Parts::NONE,
-        Parts { bones, ..Parts::NONE },
+        Parts { bones, gate, ..Parts::NONE },
         Parts { influences, ..Parts::NONE },
         Parts { mesh: 0.0, ..*all },
     ];

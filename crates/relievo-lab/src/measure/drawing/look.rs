@@ -4,7 +4,9 @@ use relievo::Error;
 use relievo::gpu::{Gpu, GpuError};
 use relievo::ops::lod::OBJECT_LEVELS;
 use relievo::render::{Layer, Renderer};
-use relievo::scene::{Camera, ObjectId, Play, Scene, View};
+use relievo::scene::{
+    BoneGate, Camera, CharacterOptions, DistanceRange as Range, ObjectId, Play, Scene, View,
+};
 
 use crate::measure::displacement::{Displacement, DisplacementMeter};
 use crate::measure::drawing::cost::FrameCost;
@@ -60,7 +62,11 @@ impl Look {
     ) -> Result<Self, Error> {
         let (quality, budget) = parts.quality();
         let mut scene = Scene::new(gpu)?;
-        let crowd = scene.add_character(&drawn.model, placements.len())?;
+        let world = |units: f32| units * stage.metres_a_unit;
+        let Range { min, max } = stage.options.range;
+        let gate = parts.bone_gate(Range { min: world(min), max: world(max) });
+        let options = CharacterOptions { gate, ..CharacterOptions::default() };
+        let crowd = scene.add_character_with(&drawn.model, placements.len(), &options)?;
         scene.set_error_budget(budget)?;
         if parts.mesh > 0.0 {
             scene.set_level_of_detail(crowd, &drawn.transition.into())?;
@@ -73,7 +79,7 @@ impl Look {
         view.set(camera)?;
         let mut meter = DisplacementMeter::of_at_most(MEASURED);
         meter.watch(&scene, crowd, &drawn.model)?;
-        let (is_gated, times, counted) = (parts.bones > 0.0, Times::default(), Counted::default());
+        let (is_gated, times, counted) = (gate != BoneGate::Off, Times::default(), Counted::default());
         Ok(Self { scene, is_gated, view, crowd, meter, times, counted })
     }
 
