@@ -185,8 +185,8 @@ impl LevelOfDetail {
         let pace = transition.pace();
         let [finer, coarser] = match (pace, transition) {
             (_, Transition::Geomorph) => [1.0; 2],
-            (Some(Pace::Band(band)), _) => criterion.band(band, false),
-            _ => criterion.band(self.hysteresis, true),
+            (Some(Pace::Band(band)), _) => criterion.band(band),
+            _ => criterion.hysteresis(self.hysteresis),
         };
         let seconds = match pace {
             Some(Pace::Seconds(seconds)) => Some(seconds),
