@@ -89,15 +89,9 @@ impl ObjectKind for OwnKind {
         "of a kind of the caller's"
     }
 
-    fn renew(
-        &mut self,
-        _: &Gpu,
-        _: &SceneLayouts,
-        capacity: usize,
-        chunks: &mut Vec<Chunk>,
-    ) -> Result<(), Error> {
+    fn renew(&mut self, target: MakeOn<'_>, chunks: &mut Vec<Chunk>) -> Result<(), Error> {
         self.is_fresh = true;
-        chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
+        chunks.iter_mut().for_each(|chunk| chunk.slots = 0..target.capacity);
         Ok(())
     }
 
