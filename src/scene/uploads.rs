@@ -88,7 +88,7 @@ impl Scene {
 impl Object {
     /// Whether the object is shown, and all of its data has arrived on the device.
     pub(super) fn is_drawn(&self) -> bool {
-        self.is_shown && self.pending.is_none()
+        self.is_visible && self.pending.is_none()
     }
 
     /// Uploads about `most` bytes of the object's waiting data. Returns the number of uploaded bytes.

@@ -59,7 +59,7 @@ pub(crate) struct Object {
     is_rebound: bool,
     /// Number of the object's handle, which shading reads.
     pub(super) handle: u32,
-    pub(super) is_shown: bool,
+    pub(super) is_visible: bool,
     /// Data of the object that still waits on the host to be uploaded.
     pub(super) pending: Option<PendingUploads>,
     /// Materials and images of a mesh or a character; `None` for other kinds.
@@ -97,7 +97,7 @@ impl Object {
             is_retuned: false,
             is_rebound: false,
             handle: 0,
-            is_shown: true,
+            is_visible: true,
             pending: None,
             looks: None,
             draws,
