@@ -146,8 +146,19 @@ impl Topology {
         let (meshes, kinds, scratch) = (meshes.to_vec(), Vec::new(), Vec::new());
         let (remap, changes) = ((0..points.len() as u32).collect(), vec![Change::None; points.len()]);
         let (touched, triangles) = (vec![false; points.len()], entries / 3);
-        let mut topology =
-            Self { rings, numbers, spans, remap, touched, changes, corners, meshes, kinds, triangles, scratch };
+        let mut topology = Self {
+            rings,
+            numbers,
+            spans,
+            remap,
+            touched,
+            changes,
+            corners,
+            meshes,
+            kinds,
+            triangles,
+            scratch,
+        };
         topology.kinds = (0..points.len() as u32).map(|point| topology.kind_of(point)).collect();
         topology
     }
