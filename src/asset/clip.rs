@@ -105,10 +105,8 @@ impl Clip {
         duration: f32,
     ) -> Result<Self, InputError> {
         InputError::check_len("clip.bones", bones.len(), skeleton.len(), "a bone")?;
-        if !(0.0..=LONGEST).contains(&duration) {
-            let bound = format!("must be in 0..={LONGEST} seconds");
-            return Err(InputError::new("clip.duration", duration, bound));
-        }
+        let bound = || format!("must be in 0..={LONGEST} seconds");
+        InputError::check((0.0..=LONGEST).contains(&duration), "clip.duration", duration, bound)?;
         let mut layout = Layout::default();
         for (index, (bone, keys)) in skeleton.bones().iter().zip(bones).enumerate() {
             let [translation, scale] =

@@ -41,9 +41,7 @@ impl Scene {
     /// # }
     /// ```
     pub fn set_upload_budget(&mut self, bytes: Option<usize>) -> Result<(), InputError> {
-        if bytes == Some(0) {
-            return Err(InputError::new("bytes", 0, "must be at least 1"));
-        }
+        InputError::check(bytes != Some(0), "bytes", 0, || "must be at least 1")?;
         self.upload_budget = bytes;
         Ok(())
     }

@@ -12,10 +12,8 @@ impl Object {
     /// Doubles the capacity for instances. If this fails, nothing changes.
     pub(in crate::scene) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         let capacity = self.instances.capacity();
-        if capacity >= MAX_CAPACITY {
-            let bound = format!("must be at most {MAX_CAPACITY}: add another object");
-            return Err(InputError::new("object.capacity", 2 * capacity, bound).into());
-        }
+        let bound = || format!("must be at most {MAX_CAPACITY}: add another object");
+        InputError::check(capacity < MAX_CAPACITY, "object.capacity", 2 * capacity, bound)?;
         let capacity = (2 * capacity).min(MAX_CAPACITY);
         self.renew(gpu, layouts, capacity)?;
         self.instances.grow(capacity);
