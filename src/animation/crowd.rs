@@ -165,10 +165,8 @@ impl Crowd {
     /// [`InputError`] if `layer` is 0 (the base) or does not exist, if there is not one weight per instance, and for weights
     /// outside 0..=1; [`GpuError`] for errors of the device.
     pub fn set_weights(&self, gpu: &Gpu, layer: usize, weights: &[f32]) -> Result<(), Error> {
-        if !(1..self.layers).contains(&layer) {
-            let bound = format!("must be in 1..{}, a layer above the base", self.layers);
-            return Err(InputError::new("layer", layer, bound).into());
-        }
+        let bound = || format!("must be in 1..{}, a layer above the base", self.layers);
+        InputError::check((1..self.layers).contains(&layer), "layer", layer, bound)?;
         InputError::check_len("weights", weights.len(), self.len(), "an instance")?;
         layers::check_weights("weights", weights)?;
         Ok(self.layer_weights.write_at(gpu, (layer - 1) * self.len(), weights)?)

@@ -82,13 +82,8 @@ impl Range {
         if !(self.min >= 0.0 && self.min.is_finite()) {
             return Err(InputError::new("range.min", self.min, "must be at least 0 and finite"));
         }
-        if !(self.max > self.min && self.max.is_finite()) {
-            return Err(InputError::new(
-                "range.max",
-                self.max,
-                format!("must be above range.min, {}", self.min),
-            ));
-        }
+        let bound = || format!("must be above range.min, {}", self.min);
+        InputError::check(self.max > self.min && self.max.is_finite(), "range.max", self.max, bound)?;
         Ok(())
     }
 

@@ -105,10 +105,8 @@ impl Clip {
         duration: f32,
     ) -> Result<Self, InputError> {
         InputError::check_len("clip.bones", bones.len(), skeleton.len(), "a bone")?;
-        if !(0.0..=LONGEST).contains(&duration) {
-            let bound = format!("must be in 0..={LONGEST} seconds");
-            return Err(InputError::new("clip.duration", duration, bound));
-        }
+        let bound = || format!("must be in 0..={LONGEST} seconds");
+        InputError::check((0.0..=LONGEST).contains(&duration), "clip.duration", duration, bound)?;
         let mut layout = Layout::default();
         for (index, (bone, keys)) in skeleton.bones().iter().zip(bones).enumerate() {
             let [translation, scale] =
@@ -184,11 +182,6 @@ impl Clip {
         let at = if track.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key };
         self.values[track.first_value as usize + at]
     }
-
-    /// Size of tracks, times and values together, in bytes.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&*self.tracks) + size_of_val(&*self.times) + size_of_val(&*self.values)
-    }
 }
 
 #[cfg(test)]
@@ -232,7 +225,6 @@ mod tests {
         assert_eq!(clip.values()[2..4], [identity; 2], "unit, and the short way");
         assert_eq!(clip.values()[7..], [[1.0, 2.0, 3.0, 0.0], identity, [4.0, 5.0, 6.0, 0.0]]);
         assert_eq!(clip.key(clip.track(0, TransformPart::Scale), 0), [7.0; 4]);
-        assert_eq!(clip.bytes(), 6 * 16 + 3 * 4 + 10 * 16);
         assert_eq!(Clip::new("a", &skeleton(), &bones, 2.0).expect("valid").duration(), 2.0);
     }
 

@@ -71,10 +71,8 @@ impl TryFrom<StoredKeys> for WeightKeys {
     fn try_from(stored: StoredKeys) -> Result<Self, InputError> {
         let StoredKeys { times, values, interpolation, targets } = stored;
         // With more targets than values, the product that `new` computes could overflow.
-        if targets > values.len() {
-            let bound = format!("must be at most {}, the number of values", values.len());
-            return Err(InputError::new("weight_keys.targets", targets, bound));
-        }
+        let bound = || format!("must be at most {}, the number of values", values.len());
+        InputError::check(targets <= values.len(), "weight_keys.targets", targets, bound)?;
         Self::new(["weight_keys.times", "weight_keys.values"], times, values, interpolation, targets)
     }
 }

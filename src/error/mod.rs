@@ -80,7 +80,7 @@ impl InputError {
         path: impl Into<String>,
         value: impl Into<f64> + Copy + Display,
     ) -> Result<(), Self> {
-        Self::check(value.into().is_finite(), path, value, || "must be finite".to_owned())
+        Self::check(value.into().is_finite(), path, value, || "must be finite")
     }
 
     /// Refuses the first value of a list that fails the test.
@@ -96,11 +96,12 @@ impl InputError {
         }
     }
 
-    fn check(
+    /// Checks a condition. `bound` names the bound that the value exceeds if the condition does not hold.
+    pub(crate) fn check<B: Into<String>>(
         is_good: bool,
         path: impl Into<String>,
         value: impl Display,
-        bound: impl FnOnce() -> String,
+        bound: impl FnOnce() -> B,
     ) -> Result<(), Self> {
         if is_good { Ok(()) } else { Err(Self::new(path, value, bound())) }
     }

@@ -130,14 +130,22 @@ impl Criterion {
     }
 
     /// Two factors that multiply a threshold. At the first product, an instance returns to the finer level; at the second, it
-    /// takes the coarser level.
+    /// takes the coarser level. `width` is the hysteresis, as a fraction of the threshold.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn hysteresis(&self, width: f32) -> [f32; 2] {
+        match self {
+            Self::Error => [1.0, 1.0 / (1.0 - width)],
+            _ => self.band(width),
+        }
+    }
+
+    /// Two factors that multiply a threshold. A transition begins at the first product, and ends at the second.
     ///
     /// `width` is half the width of the band between the two products, as a fraction of the threshold. The band of
     /// [`Criterion::Error`] lies on the coarser side, so that the allowed error is not exceeded.
     #[cfg(feature = "gpu")]
-    pub(crate) fn band(&self, width: f32, is_hysteresis: bool) -> [f32; 2] {
+    pub(crate) fn band(&self, width: f32) -> [f32; 2] {
         match self {
-            Self::Error if is_hysteresis => [1.0, 1.0 / (1.0 - width)],
             Self::Error => [1.0, 1.0 + 2.0 * width],
             Self::Distance { .. } | Self::Ratio { .. } => [1.0 - width, 1.0 + width],
             Self::Size { .. } => [1.0 / (1.0 + width).sqrt(), 1.0 / (1.0 - width).sqrt()],

@@ -146,10 +146,8 @@ impl TargetFormat {
     /// [`InputError`] that names the field: no attachment, more than 8 colours, a first colour in an integer format, a colour or
     /// depth attachment whose format is not a colour or depth format, and sample counts other than 1 and 4.
     pub fn validate(&self) -> Result<(), InputError> {
-        if self.color.len() > MAX_COLORS {
-            let bound = format!("must be at most {MAX_COLORS}");
-            return Err(InputError::new("format.color.len", self.color.len(), bound));
-        }
+        let bound = || format!("must be at most {MAX_COLORS}");
+        InputError::check(self.color.len() <= MAX_COLORS, "format.color.len", self.color.len(), bound)?;
         if self.depth.is_none() && self.color.iter().all(Option::is_none) {
             return Err(InputError::new("format", "no attachment", "must have a colour or a depth"));
         }

@@ -277,7 +277,7 @@ impl Renderer {
         pass.set_bind_group(0, view.group);
         let objects = objects.filter(|object| object.lod.instances > 0);
         if layer == Layer::Transparent && self.format.depth.is_some() {
-            for object in objects.clone() {
+            for object in objects.clone().filter(|object| hiding_fade(object.transition).is_some()) {
                 self.draw_object(pass, view, &object, |part| {
                     hiding(part, object.transition).into_iter().collect()
                 });
@@ -328,10 +328,16 @@ impl Renderer {
         lists: impl Fn(&Specialization) -> Vec<ListDraw>,
     ) {
         let Some(group) = object.drawable.group().or(object.view_group) else { return };
+        let parts = (0..).zip(object.drawable.parts());
+        let listed = parts.map(|(index, part)| (index, part, lists(part.specialization)));
+        let mut listed = listed.filter(|(.., lists)| !lists.is_empty()).peekable();
+        if listed.peek().is_none() {
+            return;
+        }
         pass.set_bind_group(1, group);
         pass.set_index_buffer(object.drawable.indices().slice(..));
-        for (index, part) in (0..).zip(object.drawable.parts()) {
-            self.draw_part(pass, view, object, (index, part), &lists(part.specialization));
+        for (index, part, lists) in listed {
+            self.draw_part(pass, view, object, (index, part), &lists);
         }
     }
 
@@ -382,9 +388,6 @@ impl Renderer {
         (index, part): (u32, Part<'a>),
         lists: &[ListDraw],
     ) {
-        if lists.is_empty() {
-            return;
-        }
         pass.set_bind_group(2, part.group);
         for list in lists {
             for is_mirrored in [false, true] {
@@ -413,13 +416,18 @@ struct ListDraw {
 /// The draw that writes a part's depth before the part is blended. It hides the part's inside, and instances that fade behind the
 /// part. `None` for a level that is blended over an opaque level.
 fn hiding(part: &Specialization, transition: Transition) -> Option<ListDraw> {
-    let fade = match transition {
-        Transition::Alpha { .. } => Fade::None,
-        Transition::CrossFade(_) => Fade::Pushed,
-        _ => return None,
-    };
+    let fade = hiding_fade(transition)?;
     let depth = ListDraw { layer: Layer::Depth, fade, is_fading: true };
     (!part.state().blended).then_some(depth)
+}
+
+/// The fade with which an object with this transition writes depth before it is blended; `None` if it writes none.
+fn hiding_fade(transition: Transition) -> Option<Fade> {
+    match transition {
+        Transition::Alpha { .. } => Some(Fade::None),
+        Transition::CrossFade(_) => Some(Fade::Pushed),
+        _ => None,
+    }
 }
 
 /// The fade of instances that are drawn one by one, for an object with this transition.

@@ -82,10 +82,8 @@ impl Shading {
                 }
                 error => Error::from(error),
             })?;
-            if compiled.is_none() {
-                let bound = "must be of the renderer's device";
-                return Err(InputError::new("shading.layout", "of another wgpu::Instance", bound).into());
-            }
+            let bound = || "must be of the renderer's device";
+            InputError::check(compiled.is_some(), "shading.layout", "of another wgpu::Instance", bound)?;
         }
         Ok(())
     }

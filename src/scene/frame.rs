@@ -301,10 +301,8 @@ impl Scene {
         let (Some(lists), Some(recorded)) = (&view.lists, view.last_recorded()) else {
             return Err(InputError::new("view", "not recorded", "must be recorded before it is drawn"));
         };
-        if !view.is_of_frame(self.frames) {
-            let bound = "must be among the views of the last Scene::record";
-            return Err(InputError::new("view", "left out of the last frame", bound));
-        }
+        let bound = || "must be among the views of the last Scene::record";
+        InputError::check(view.is_of_frame(self.frames), "view", "left out of the last frame", bound)?;
         if self.layout.as_ref().is_none_or(|layout| lists.version != layout.version) {
             let bound = "must be recorded again, since objects were added, removed or grew, or the scene started afresh";
             return Err(InputError::new("view", "out of date", bound));
@@ -359,9 +357,7 @@ impl Scene {
     }
 
     fn check(&self, views: &[&mut View]) -> Result<(), InputError> {
-        if views.is_empty() {
-            return Err(InputError::new("views", "none", "must be at least one"));
-        }
+        InputError::check(!views.is_empty(), "views", "none", || "must be at least one")?;
         views.iter().enumerate().try_for_each(|(at, view)| view.check(self, &format!("views[{at}]")))?;
         if views.iter().any(|view| view.camera().is_none()) {
             return Err(InputError::new("view.camera", "none", "must be set before a frame is recorded"));

@@ -119,9 +119,7 @@ impl InstancePose {
             None => self.world_from_model,
         };
         let above = above.matrix3;
-        if above.determinant() == 0.0 {
-            return Err(InputError::new("bone", bone, "must not lie below a scale of 0"));
-        }
+        InputError::check(above.determinant() != 0.0, "bone", bone, || "must not lie below a scale of 0")?;
         let turned = above.inverse() * DMat3::from_quat(rotation / length) * above;
         let own = DQuat::from_array(local.rotation.map(f64::from));
         let turned = (rotation_of(turned) * own).normalize();
@@ -141,9 +139,7 @@ impl InstancePose {
         let offset = offset.checked("offset")?;
         let stretch = self.world_from_bone(bone)?.matrix3;
         let stretch = DVec3::new(stretch.x_axis.length(), stretch.y_axis.length(), stretch.z_axis.length());
-        if stretch.min_element() == 0.0 {
-            return Err(InputError::new("bone", bone, "must not be scaled by 0"));
-        }
+        InputError::check(stretch.min_element() != 0.0, "bone", bone, || "must not be scaled by 0")?;
         let translation = DVec3::from(offset.translation.map(f64::from)) / stretch;
         let rotation = DMat3::from_quat(DQuat::from_array(offset.rotation.map(f64::from)));
         let scale = [0, 1, 2].map(|axis| {

@@ -136,9 +136,7 @@ impl LevelOfDetail {
         if !(0.0..1.0).contains(hysteresis) {
             return Err(InputError::new("hysteresis", hysteresis, "must be at least 0 and below 1"));
         }
-        if !(*bias > 0.0 && bias.is_finite()) {
-            return Err(InputError::new("bias", bias, "must be finite, and above 0"));
-        }
+        InputError::check(*bias > 0.0 && bias.is_finite(), "bias", bias, || "must be finite, and above 0")?;
         if let Some(rank) = rank.filter(|rank| u32::from(*rank) >= RANKS) {
             return Err(InputError::new("rank", rank, format!("must be below {RANKS}")));
         }
@@ -190,8 +188,8 @@ impl LevelOfDetail {
         let pace = transition.pace();
         let [finer, coarser] = match (pace, transition) {
             (_, Transition::Geomorph) => [1.0; 2],
-            (Some(Pace::Band(band)), _) => criterion.band(band, false),
-            _ => criterion.band(self.hysteresis, true),
+            (Some(Pace::Band(band)), _) => criterion.band(band),
+            _ => criterion.hysteresis(self.hysteresis),
         };
         let seconds = match pace {
             Some(Pace::Seconds(seconds)) => Some(seconds),

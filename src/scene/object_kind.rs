@@ -73,16 +73,10 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
 
     // Device resources.
 
-    /// Allocates memory for `capacity` instances and resets the state of all instances. If this fails, nothing changes.
-    fn renew(
-        &mut self,
-        gpu: &Gpu,
-        layouts: &SceneLayouts,
-        capacity: usize,
-        chunks: &mut Vec<Chunk>,
-    ) -> Result<(), Error> {
-        let _ = (gpu, layouts);
-        chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
+    /// Allocates memory for the capacity in `target`, on the same device, and resets the state of all instances. If this
+    /// fails, nothing changes.
+    fn renew(&mut self, target: MakeOn<'_>, chunks: &mut Vec<Chunk>) -> Result<(), Error> {
+        chunks.iter_mut().for_each(|chunk| chunk.slots = 0..target.capacity);
         Ok(())
     }
 

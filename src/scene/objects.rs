@@ -322,13 +322,13 @@ impl Scene {
     /// ```no_run
     /// # use relievo::scene::{ObjectId, Scene};
     /// # fn example(scene: &mut Scene, land: ObjectId, is_indoors: bool) -> Result<(), relievo::Error> {
-    /// scene.show(land, !is_indoors)?;
+    /// scene.set_visible(land, !is_indoors)?;
     /// # Ok(())
     /// # }
     /// ```
-    pub fn show(&mut self, object: ObjectId, is_shown: bool) -> Result<(), Error> {
+    pub fn set_visible(&mut self, object: ObjectId, is_visible: bool) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
-        if std::mem::replace(&mut entry.is_shown, is_shown) != is_shown {
+        if std::mem::replace(&mut entry.is_visible, is_visible) != is_visible {
             // Writes only the entries of this object. A new layout would write the entries of all objects.
             let entries = entry.chunks.iter().map(|chunk| (chunk.number, entry.lod_object(chunk)));
             let entries: Vec<_> = entries.collect();

@@ -117,9 +117,7 @@ impl Placement {
     /// [`InputError`] for values that are not finite, a rotation of length 0, a scale of 0 along all axes, and a
     /// position beyond ±549,755,813,888 (2³¹ cells) along an axis of the world.
     pub fn checked(self) -> Result<Self, InputError> {
-        if self.offset.is_nan() {
-            return Err(InputError::new("placement.offset", self.offset, "must be finite"));
-        }
+        InputError::check(!self.offset.is_nan(), "placement.offset", self.offset, || "must be finite")?;
         if !self.scale.is_finite() || self.scale == Vec3::ZERO {
             return Err(InputError::new(
                 "placement.scale",

@@ -55,9 +55,7 @@ impl Quality {
         if !(0.0..f32::INFINITY).contains(&self.pixels) {
             return Err(InputError::new("quality.pixels", self.pixels, "must be finite, and not negative"));
         }
-        if self.triangles == Some(0) {
-            return Err(InputError::new("quality.triangles", 0, "must be at least 1"));
-        }
+        InputError::check(self.triangles != Some(0), "quality.triangles", 0, || "must be at least 1")?;
         match self.milliseconds {
             Some(limit) if !(limit > 0.0 && limit.is_finite()) => {
                 Err(InputError::new("quality.milliseconds", limit, "must be finite, and above 0"))

@@ -90,16 +90,9 @@ impl Ray {
     /// # Errors
     /// [`InputError`] for a position or a direction that is not finite, a direction of length 0, and a negative limit.
     pub fn validate(&self) -> Result<(), InputError> {
-        if !self.offset.is_finite() {
-            return Err(InputError::new("ray.offset", self.offset, "must be finite"));
-        }
-        if self.direction.try_normalize().is_none() {
-            return Err(InputError::new(
-                "ray.direction",
-                self.direction,
-                "must be finite, with a length that f64 can hold, and not 0",
-            ));
-        }
+        InputError::check(self.offset.is_finite(), "ray.offset", self.offset, || "must be finite")?;
+        let bound = || "must be finite, with a length that f64 can hold, and not 0";
+        InputError::check(self.direction.try_normalize().is_some(), "ray.direction", self.direction, bound)?;
         // A NaN limit fails this comparison.
         if self.limit >= 0.0 {
             return Ok(());

@@ -208,9 +208,7 @@ pub(super) fn drawn(
 /// Checks the relief's mesh and images.
 fn check(gpu: &Gpu, Relief { mesh, maps, .. }: &Relief) -> Result<(), InputError> {
     mesh.validate().map_err(|error| error.below("mesh"))?;
-    if mesh.indices.is_empty() {
-        return Err(InputError::new("mesh.indices.len", 0, "must be at least 3"));
-    }
+    InputError::check(!mesh.indices.is_empty(), "mesh.indices.len", 0, || "must be at least 3")?;
     for (at, SurfaceVertex { position, normal, tangent, uv }) in mesh.vertices.iter().enumerate() {
         let fields: [(&str, &[f32]); 4] =
             [("position", position), ("normal", normal), ("tangent", tangent), ("uv", uv)];

@@ -34,9 +34,7 @@ impl Scene {
         let placement = placement.checked()?;
         let (gpu, layouts) = (self.gpu.clone(), self.layouts_of_groups.clone());
         let entry = self.object_mut(object)?;
-        if !entry.kind.is_spawned() {
-            return Err(InputError::new("object", "terrain", "must be a mesh or a character").into());
-        }
+        InputError::check(entry.kind.is_spawned(), "object", "terrain", || "must be a mesh or a character")?;
         let mut has_grown = false;
         if entry.instances.alive() == entry.instances.capacity() {
             entry.grow(&gpu, &layouts)?;

@@ -41,9 +41,7 @@ impl Scene {
     /// # }
     /// ```
     pub fn set_upload_budget(&mut self, bytes: Option<usize>) -> Result<(), InputError> {
-        if bytes == Some(0) {
-            return Err(InputError::new("bytes", 0, "must be at least 1"));
-        }
+        InputError::check(bytes != Some(0), "bytes", 0, || "must be at least 1")?;
         self.upload_budget = bytes;
         Ok(())
     }
@@ -88,7 +86,7 @@ impl Scene {
 impl Object {
     /// Whether the object is shown, and all of its data has arrived on the device.
     pub(super) fn is_drawn(&self) -> bool {
-        self.is_shown && self.pending.is_none()
+        self.is_visible && self.pending.is_none()
     }
 
     /// Uploads about `most` bytes of the object's waiting data. Returns the number of uploaded bytes.

@@ -57,9 +57,7 @@ impl Extent {
     /// # Errors
     /// The same errors as [`Extent::new`]; also [`InputError`] for a model without meshes.
     pub fn of_model(model: &Model, clips: &[usize], poses: usize) -> Result<Self, InputError> {
-        if model.meshes.is_empty() {
-            return Err(InputError::new("model.meshes.len", 0, "must be at least 1"));
-        }
+        InputError::check(!model.meshes.is_empty(), "model.meshes.len", 0, || "must be at least 1")?;
         let mut all = Self { center: BoundingSphere::in_clips(model).center, radius: 0.0, stray: 0.0 };
         for index in 0..model.meshes.len() {
             let moments = moments(model, index, clips, poses)?;

@@ -68,9 +68,7 @@ pub(super) fn moments(
 ) -> Result<Vec<Moment>, InputError> {
     InputError::check_below("mesh", mesh, model.meshes.len())?;
     let mesh = &model.meshes[mesh];
-    if poses == 0 {
-        return Err(InputError::new("poses", 0, "must be at least 1, to see what vertices do"));
-    }
+    InputError::check(poses != 0, "poses", 0, || "must be at least 1, to see what vertices do")?;
     if poses > MOST_POSES && !clips.is_empty() {
         return Err(InputError::new("poses", poses, format!("must be at most {MOST_POSES}")));
     }

@@ -58,10 +58,8 @@ impl Cover {
     /// [`InputError`] when the number of textures is not the number of zones, and as [`TerrainConfig::validate`].
     pub fn new(config: &TerrainConfig, textures: &[TerrainTexture]) -> Result<Self, InputError> {
         config.validate()?;
-        if textures.len() != config.zones.len() {
-            let bound = format!("must be one for each of the {} zones", config.zones.len());
-            return Err(InputError::new("textures.len", textures.len(), bound));
-        }
+        let bound = || format!("must be one for each of the {} zones", config.zones.len());
+        InputError::check(textures.len() == config.zones.len(), "textures.len", textures.len(), bound)?;
         let tile = config.tile();
         let mut cover = Self {
             zones: Vec::new(),

@@ -189,10 +189,8 @@ impl HeightJob {
     /// # Errors
     /// [`InputError`] for too many patches or patches out of bounds; [`GpuError::Limit`] for more features than the capacity.
     pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
-        if patches.len() > self.count as usize {
-            let bound = format!("must be at most {}, the batch's count", self.count);
-            return Err(InputError::new("patches.len", patches.len(), bound).into());
-        }
+        let bound = || format!("must be at most {}, the batch's count", self.count);
+        InputError::check(patches.len() <= self.count as usize, "patches.len", patches.len(), bound)?;
         let mut base = Vec::new();
         let mut origins = vec![Vec::with_capacity(patches.len()); self.origins.len()];
         for &patch in patches {

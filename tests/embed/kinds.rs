@@ -669,7 +669,7 @@ fn names_of_the_crate_are_free() {
         let mut scene = Scene::new(&gpu).expect("compiled");
         for sample in &SAMPLES {
             let object = (sample.add)(&gpu, &mut scene);
-            scene.show(object, false).expect("there");
+            scene.set_visible(object, false).expect("there");
         }
         let program =
             relievo::scene::kind::KindProgram::new(kind, &text.replace(" scene_", &format!(" {kind}_")));

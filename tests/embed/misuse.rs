@@ -31,7 +31,7 @@ fn handles_of_another_scene_are_refused() {
     let refused = [
         ("object", wrong(scene.spawn(object, Placement::default()))),
         ("object", wrong(scene.remove(object))),
-        ("object", wrong(scene.show(object, false))),
+        ("object", wrong(scene.set_visible(object, false))),
         ("object", wrong(scene.instances(object))),
         ("object", wrong(scene.lod_bias(object))),
         ("object", wrong(scene.ground(one.land, 0.0, 0.0))),

@@ -119,7 +119,7 @@ fn rays_have_limits_and_masks() {
     scene.set_visibility_mask(front, 0b10).expect("there");
     assert_eq!(first(&scene, &Ray { mask: 0b01, ..ray }).map(|hit| hit.instance), Some(back));
     assert_eq!(first(&scene, &Ray { mask: 0b11, ..ray }).map(|hit| hit.instance), Some(front));
-    scene.show(creature, false).expect("there");
+    scene.set_visible(creature, false).expect("there");
     assert_eq!(first(&scene, &ray).map(|hit| hit.instance), Some(back));
     scene.despawn(back).expect("there");
     assert_eq!(first(&scene, &ray), None);

@@ -79,7 +79,7 @@ fn close() -> Camera {
 /// A scene of three tinted cubes, each with a word.
 fn cubes(gpu: &Gpu) -> (World, View) {
     let mut world = World::empty(gpu, 1);
-    world.scene.show(world.land, false).expect("terrain");
+    world.scene.set_visible(world.land, false).expect("terrain");
     let material = plain([0.5, 0.25, 1.0, 1.0], Alpha::Opaque);
     let cubes = world.scene.add_mesh(&model(&cube(), material, false), 3).expect("added");
     for at in 0..3 {

@@ -81,7 +81,7 @@ fn depth_that_disagrees_is_refused() {
 fn four_samples_smooth_edges() {
     let gpu = device();
     let mut world = World::new(&gpu, 10);
-    world.scene.show(world.land, false).expect("terrain");
+    world.scene.set_visible(world.land, false).expect("terrain");
     // Full detail: levels follow the size of the picture.
     let mut view = world.view(0.0);
     let large = SIZE.map(|edge| 4 * edge);

@@ -163,7 +163,7 @@ fn transparent_characters_are_drawn_as_opaque_ones() {
             let place = Placement::at([(at % 10) as f32 * 4.0 - 18.0, -2.0, -10.0 - 3.0 * (at / 10) as f32]);
             scene.spawn(object, place).expect("room");
         }
-        scene.show(object, !hidden).expect("there");
+        scene.set_visible(object, !hidden).expect("there");
         scene.advance(0.5).expect("finite");
         view.set(camera(6.0)).expect("a camera");
         let renderer = raw.renderer(&gpu, &scene);

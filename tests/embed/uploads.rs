@@ -92,7 +92,7 @@ impl Stage {
     /// The picture of a scene without a budget, in which these objects are hidden.
     fn without(&mut self, hidden: [bool; 4]) -> RgbaImage {
         for (object, is_hidden) in self.objects.into_iter().zip(hidden) {
-            self.scene.show(object, !is_hidden).expect("of the scene");
+            self.scene.set_visible(object, !is_hidden).expect("of the scene");
         }
         self.scene.refresh().expect("afresh");
         self.shot()

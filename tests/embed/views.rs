@@ -264,7 +264,7 @@ fn casters_outside_the_view_are_in_the_shadow_map() {
         let map = shadow_map(&gpu, world, eye, sun);
         map.iter().filter(|depth| **depth < 1.0).count()
     };
-    world.scene.show(world.land, false).expect("terrain");
+    world.scene.set_visible(world.land, false).expect("terrain");
     let all = depths(&mut world, &mut eye, &mut sun);
     assert!(all > 200, "{all} texels");
     for instance in world.crowd[..5].iter().copied() {

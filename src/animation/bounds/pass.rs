@@ -40,9 +40,7 @@ impl BoundsPass {
     ) -> Result<Job, Error> {
         check_bone_radii(bone_radii, crowd.bones)?;
         bounds.check_holds("bounds", crowd.len())?;
-        if crowd.len() >= 1 << 26 {
-            return Err(InputError::new("crowd.len", crowd.len(), "must be below 2^26").into());
-        }
+        InputError::check(crowd.len() < 1 << 26, "crowd.len", crowd.len(), || "must be below 2^26")?;
         let params = BoundsParams { instances: crowd.len() as u32, bones: crowd.bones as u32 };
         let uniform = Uniform::new(gpu, "bounds", &params)?;
         let bone_radii = Buffer::from_slice(gpu, "bone_radii", bone_radii)?;

@@ -98,15 +98,6 @@ impl GatedFrame {
         self.cursor.set_through(upload, elapsed)
     }
 
-    /// Sets the largest number of bones to sample per frame, from the next submission on.
-    ///
-    /// # Errors
-    /// [`InputError`](crate::InputError) for a gate other than [`Gate::Budget`]; [`GpuError`](crate::gpu::GpuError) for errors of
-    /// the device.
-    pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
-        self.gate.set_budget(gpu, bones)
-    }
-
     /// Records the frame in a compute pass of its own. After the pass has run, the crowd's model matrices are valid for the set
     /// time.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {

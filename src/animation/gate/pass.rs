@@ -1,6 +1,7 @@
 //! The GPU pass of `kernels/animation/gate.wgsl`. The kernels of [`Gate::Budget`] are in `animation::budget`.
 
 use super::{Frame, Gate};
+use crate::Error;
 use crate::animation::active::Active;
 use crate::animation::budget::{BudgetJob, BudgetPass};
 use crate::animation::crowd::Crowd;
@@ -10,7 +11,6 @@ use crate::animation::model_matrices::Consumer;
 use crate::gpu::bindings::animation::gate as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform, Upload, compute_pass};
 use crate::shared::animation::gate::{BOUNDED, GateParams, OFF, RANDOM, SKIP_PERIOD, UNIFORM};
-use crate::{Error, InputError};
 
 /// Chooses the bones to sample by any [`Gate`], on the GPU.
 #[derive(Debug, Clone)]
@@ -58,7 +58,7 @@ impl GatePass {
     /// Prepares a job that chooses which bones of a crowd are sampled. The crowd's clip clocks are the input.
     ///
     /// # Errors
-    /// [`GpuError`] for errors of the device; [`InputError`] in these cases:
+    /// [`GpuError`] for errors of the device; [`InputError`](crate::InputError) in these cases:
     ///
     /// - the crowd's bones, clips or rotation path differ from the gate's table;
     /// - `active` belongs to another crowd;
@@ -151,20 +151,6 @@ impl GateJob {
                 upload.uniform(uniform, &GateParams { ticks, frame_ticks, frame, ..*params })
             }
             Work::Budget(_) => Ok(()),
-        }
-    }
-
-    /// Sets the largest number of bones to sample per frame, from the next submission on.
-    ///
-    /// # Errors
-    /// [`InputError`] for a gate other than [`Gate::Budget`]; [`GpuError`] for errors of the device.
-    pub fn set_budget(&self, gpu: &Gpu, bones: u32) -> Result<(), Error> {
-        match &self.work {
-            Work::Gate { .. } => {
-                let bound = "must be of a crowd that is under one, not another gate";
-                Err(InputError::new("budget", bones, bound).into())
-            }
-            Work::Budget(job) => Ok(job.set(gpu, bones)?),
         }
     }
 

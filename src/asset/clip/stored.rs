@@ -38,10 +38,8 @@ impl TryFrom<StoredClip> for Clip {
         for (at, track) in tracks.iter().enumerate() {
             last = last.max(check_track(at, track, &times, &values)?);
         }
-        if !(last..=LONGEST).contains(&duration) {
-            let bound = format!("must be in {last}..={LONGEST} seconds, from the last key on");
-            return Err(InputError::new("clip.duration", duration, bound));
-        }
+        let bound = || format!("must be in {last}..={LONGEST} seconds, from the last key on");
+        InputError::check((last..=LONGEST).contains(&duration), "clip.duration", duration, bound)?;
         Ok(Self { name, duration, tracks, times, values })
     }
 }

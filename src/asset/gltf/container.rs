@@ -24,9 +24,7 @@ impl<'a> Container<'a> {
             word.map(u32::from_le_bytes).ok_or_else(cut_off)
         };
         let (version, length) = (word(4)?, word(8)? as usize);
-        if version != 2 {
-            return Err(InputError::new("GLB.version", version, "must be 2"));
-        }
+        InputError::check(version == 2, "GLB.version", version, || "must be 2")?;
         InputError::check_within("GLB.length", length, 12..=bytes.len())?;
         let mut found = Self { json: &[], binary: None };
         let mut at = 12;

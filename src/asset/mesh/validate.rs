@@ -76,10 +76,8 @@ impl Mesh {
         if self.partners.is_empty() || self.levels.is_empty() {
             return Ok(());
         }
-        if self.partners.len() != vertices {
-            let bound = format!("must be {vertices}, one a vertex, or 0");
-            return Err(InputError::new("mesh.partners.len", self.partners.len(), bound));
-        }
+        let bound = || format!("must be {vertices}, one a vertex, or 0");
+        InputError::check(self.partners.len() == vertices, "mesh.partners.len", self.partners.len(), bound)?;
         let coarsest = self.coarsest_levels();
         for (vertex, partner) in (0..).zip(&self.partners) {
             let Some(level) = coarsest.get(*partner as usize) else {

@@ -41,10 +41,8 @@ impl TryFrom<StoredModel> for Model {
                 InputError::check_below(path, *clip, model.clips.len())?;
             }
         }
-        if model.skinned > model.meshes.len() {
-            let bound = format!("must be at most {}, the number of meshes", model.meshes.len());
-            return Err(InputError::new("skinned", model.skinned, bound));
-        }
+        let bound = || format!("must be at most {}, the number of meshes", model.meshes.len());
+        InputError::check(model.skinned <= model.meshes.len(), "skinned", model.skinned, bound)?;
         Ok(model)
     }
 }

@@ -27,10 +27,8 @@ pub(super) fn import(bytes: &[u8], beside: Option<Beside<'_>>) -> Result<Model, 
     let parsed = Parsed::new(bytes)?;
     let triangles = Triangles::new(&parsed)?;
     let parts = parsed.parts();
-    if parts.len() > MAX_MESHES {
-        let bound = format!("must be at most {MAX_MESHES} objects, groups and materials");
-        return Err(InputError::new("OBJ", parts.len(), bound));
-    }
+    let bound = || format!("must be at most {MAX_MESHES} objects, groups and materials");
+    InputError::check(parts.len() <= MAX_MESHES, "OBJ", parts.len(), bound)?;
     let normals = Normals::new(&parsed, &triangles.corners);
     let mut materials = Materials::new(beside, &parsed.libraries)?;
     let mut nodes = Nodes::default();
@@ -139,10 +137,8 @@ fn mesh(parsed: &Parsed, normals: &Normals, corners: &[Corner]) -> Result<Mesh, 
     let mut vertices = corners.to_vec();
     vertices.sort_unstable();
     vertices.dedup();
-    if vertices.len() > MAX_VERTICES {
-        let bound = format!("must be at most {MAX_VERTICES} in a mesh");
-        return Err(InputError::new("vertices.len", vertices.len(), bound));
-    }
+    let bound = || format!("must be at most {MAX_VERTICES} in a mesh");
+    InputError::check(vertices.len() <= MAX_VERTICES, "vertices.len", vertices.len(), bound)?;
     let vertex = |corner: &Corner| vertices.partition_point(|other| other < corner) as u32;
     let uv = |corner: &Corner| parsed.uv.get(corner[1] as usize).copied().unwrap_or_default();
     Ok(Mesh {

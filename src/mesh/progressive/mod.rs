@@ -222,10 +222,8 @@ impl ProgressiveMesh {
         values: &[[f32; N]],
     ) -> Result<Vec<[f32; N]>, InputError> {
         InputError::check_within("t", t, 0.0..=1.0)?;
-        if values.len() < self.vertices(level) {
-            let bound = format!("must be at least {}, one a vertex", self.vertices(level));
-            return Err(InputError::new("values.len", values.len(), bound));
-        }
+        let bound = || format!("must be at least {}, one a vertex", self.vertices(level));
+        InputError::check(values.len() >= self.vertices(level), "values.len", values.len(), bound)?;
         let between = |(a, partner): (&[f32; N], &u32)| {
             let b = values[*partner as usize];
             std::array::from_fn(|at| a[at] * (1.0 - t) + b[at] * t)

@@ -62,7 +62,7 @@ mod tests {
         let indices = [0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1];
         let off = |poses: &[Vec<[f32; 3]>], neighbor: u32, least: f64| {
             let points = Points::new(poses);
-            let (topology, scale) = (Topology::new(&points, &indices, false), points.scale());
+            let (topology, scale) = (Topology::new(&points, &indices, &[], false), points.scale());
             let both = [0, neighbor];
             let square = bridged(&topology, &points, both, (least * scale).powi(2));
             let planes = deviation(&topology, &points, both, &mut 0).map(|square| square.sqrt() / scale);

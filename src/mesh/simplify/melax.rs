@@ -50,7 +50,7 @@ mod tests {
 
     fn of(positions: &[[f32; 3]], indices: &[u32]) -> (Points, Topology) {
         let points = Points::new(&[positions.to_vec()]);
-        let topology = Topology::new(&points, indices, false);
+        let topology = Topology::new(&points, indices, &[], false);
         (points, topology)
     }
 

@@ -28,8 +28,6 @@ struct Reducer<'a> {
     neighbors: Neighbors,
     /// Parts that may vanish as a whole.
     parts: Parts,
-    /// Mesh of each triangle; empty if all triangles belong to one mesh.
-    meshes: Vec<u32>,
     /// For each point, whether an illegal collapse is cheaper than the queued collapse. The illegal collapse may become
     /// legal when triangles around the point change.
     watched: Vec<bool>,
@@ -101,18 +99,16 @@ impl<'a> Reducer<'a> {
             Seams::Crossed { attributes } => points.on_charts(surface.attributes, surface.stride, attributes),
         };
         let points = if groups.bodies.is_empty() { points } else { points.on_bodies(groups.bodies) };
-        let is_numbered = is_limited || !groups.meshes.is_empty();
-        let topology = Topology::new(&points, surface.indices, is_numbered);
+        let topology = Topology::new(&points, surface.indices, groups.meshes, is_limited);
         let quadrics = match cost {
             Cost::Quadric => Some(Quadrics::new(surface, &points, &topology)),
             Cost::Melax { .. } => None,
         };
-        let tracked_samples = is_limited
-            .then(|| TrackedSamples::new(&topology, &points, surface.indices.len() / 3, groups.meshes));
+        let tracked_samples =
+            is_limited.then(|| TrackedSamples::new(&topology, &points, surface.indices.len() / 3));
         let marks = [points.len(), surface.poses[0].len()].map(Marks::new);
         let (neighbors, changed, watched) = (Neighbors::default(), Vec::new(), vec![false; points.len()]);
         let (parts, listed, costs) = (Parts::default(), None, Vec::new());
-        let meshes = groups.meshes.to_vec();
         Self {
             points,
             topology,
@@ -121,7 +117,6 @@ impl<'a> Reducer<'a> {
             tracked_samples,
             neighbors,
             parts,
-            meshes,
             watched,
             marks,
             changed,

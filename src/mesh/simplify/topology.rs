@@ -94,6 +94,8 @@ pub(crate) struct Topology {
     changes: Vec<Change>,
     /// Corners of each triangle. Empty if triangles are not numbered.
     corners: Vec<[Corner; 3]>,
+    /// Mesh of each triangle. Empty if all triangles belong to one mesh.
+    meshes: Vec<u32>,
     kinds: Vec<Kind>,
     triangles: usize,
     /// Temporary list with the triangles of a collapsing point.
@@ -101,10 +103,11 @@ pub(crate) struct Topology {
 }
 
 impl Topology {
-    /// Builds the connectivity of a mesh. Triangles are numbered if `is_numbered` is set, or if several vertices share
-    /// a position.
-    pub(crate) fn new(points: &Points, indices: &[u32], is_numbered: bool) -> Self {
-        let is_numbered = is_numbered || !points.are_vertices();
+    /// Builds the connectivity of triangles. `meshes` has the mesh of each triangle; empty if all triangles belong to
+    /// one mesh. Triangles are numbered if `is_numbered` is set, if there are meshes, or if several vertices share a
+    /// position.
+    pub(crate) fn new(points: &Points, indices: &[u32], meshes: &[u32], is_numbered: bool) -> Self {
+        let is_numbered = is_numbered || !meshes.is_empty() || !points.are_vertices();
         let triangle =
             |corners: &[u32]| [points.of(corners[0]), points.of(corners[1]), points.of(corners[2])];
         let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
@@ -140,11 +143,22 @@ impl Topology {
         let corner = |vertex: u32| Corner { vertex, point: points.of(vertex) };
         let all = indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|at| corner(corners[at])));
         let corners = if is_numbered { all.collect() } else { Vec::new() };
-        let (kinds, scratch) = (Vec::new(), Vec::new());
+        let (meshes, kinds, scratch) = (meshes.to_vec(), Vec::new(), Vec::new());
         let (remap, changes) = ((0..points.len() as u32).collect(), vec![Change::None; points.len()]);
         let (touched, triangles) = (vec![false; points.len()], entries / 3);
-        let mut topology =
-            Self { rings, numbers, spans, remap, touched, changes, corners, kinds, triangles, scratch };
+        let mut topology = Self {
+            rings,
+            numbers,
+            spans,
+            remap,
+            touched,
+            changes,
+            corners,
+            meshes,
+            kinds,
+            triangles,
+            scratch,
+        };
         topology.kinds = (0..points.len() as u32).map(|point| topology.kind_of(point)).collect();
         topology
     }
@@ -233,6 +247,12 @@ impl Topology {
     /// Indices of the triangles around a point; empty if triangles are not numbered.
     pub(crate) fn around(&self, point: u32) -> &[u32] {
         self.numbers.get(self.spans[point as usize].range()).unwrap_or_default()
+    }
+
+    /// Mesh of a triangle; `None` if all triangles belong to one mesh.
+    #[inline]
+    pub(crate) fn mesh(&self, triangle: u32) -> Option<u32> {
+        self.meshes.get(triangle as usize).copied()
     }
 
     /// Reads the location of a point's triangles to prefetch it. The returned number only prevents the compiler from

@@ -25,11 +25,8 @@ pub(crate) struct TrackedSamples {
     samples: Vec<Vec<u32>>,
     /// For each sample, the triangle to which it is assigned.
     homes: Vec<u32>,
-    /// Mesh of each triangle; empty if all triangles belong to one mesh. A sample is assigned only to triangles of its
-    /// own mesh.
-    meshes: Vec<u32>,
-    /// For each point, its mesh in the original; [`ANY`] if several meshes or none had the point. Empty if `meshes` is
-    /// empty.
+    /// For each point, its mesh in the original; [`ANY`] if several meshes or none had the point. A sample is assigned
+    /// only to triangles of its own mesh.
     meshes_of_points: Vec<u32>,
     /// For each point, the samples that caused the latest refusals of its collapses. Most collapses are tested
     /// repeatedly, and one sample is usually enough to refuse a collapse.
@@ -240,8 +237,8 @@ impl<F: Fn(usize) -> Vec3> Place<F> {
 
 impl TrackedSamples {
     /// Takes the samples, and assigns each midpoint to a triangle that contains it. `triangles` is the number of
-    /// triangles. `meshes` has the mesh of each triangle; empty if all triangles belong to one mesh.
-    pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize, meshes: &[u32]) -> Self {
+    /// triangles.
+    pub(crate) fn new(topology: &Topology, points: &Points, triangles: usize) -> Self {
         let mut samples = vec![Vec::new(); triangles];
         let mut homes = vec![NONE; points.len()];
         let mut middles = Middles { positions: Vec::new(), triangles: Vec::new() };
@@ -256,27 +253,23 @@ impl TrackedSamples {
                     samples[ring.triangle as usize].push(homes.len() as u32);
                     homes.push(ring.triangle);
                     middles.positions.extend((0..points.poses()).map(|pose| middle(points, ends, pose)));
-                    let mesh = meshes.get(ring.triangle as usize).copied().unwrap_or(ANY);
-                    middles.triangles.push(Face::new(points, [ring.triangle, mesh], corners));
+                    let number = [ring.triangle, mesh_of(topology, ring.triangle)];
+                    middles.triangles.push(Face::new(points, number, corners));
                 }
             }
         }
-        let mesh_of = |point: u32| {
-            let mut all = topology.around(point).iter().map(|triangle| meshes[*triangle as usize]);
+        let mesh_of_point = |point: u32| {
+            let mut all = topology.around(point).iter().map(|triangle| mesh_of(topology, *triangle));
             let first = all.next().unwrap_or(ANY);
             if all.all(|other| other == first) { first } else { ANY }
         };
-        let meshes_of_points = match meshes {
-            [] => Vec::new(),
-            _ => (0..points.len() as u32).map(mesh_of).collect(),
-        };
+        let meshes_of_points = (0..points.len() as u32).map(mesh_of_point).collect();
         let (faces, below) = (Vec::new(), Vec::new());
         let witnesses = vec![[NONE; WITNESSES]; points.len()];
         let verdicts = Verdicts::new(points.len());
         Self {
             samples,
             homes,
-            meshes: meshes.to_vec(),
             meshes_of_points,
             witnesses,
             middles,
@@ -367,7 +360,7 @@ impl TrackedSamples {
             let numbers = topology.around(around).iter().copied();
             let rings = topology.ring(around).iter().zip(numbers);
             for ([next, last], number) in rings.filter(|(ends, _)| !ends.contains(&other)) {
-                if !place.may_be_on(self.mesh_of(number)) {
+                if !place.may_be_on(mesh_of(topology, number)) {
                     continue;
                 }
                 least =
@@ -393,7 +386,7 @@ impl TrackedSamples {
             for ring in topology.one_ring(around) {
                 let ends = [ring.next.point, ring.last.point];
                 if !ends.contains(&other) {
-                    let number = [ring.triangle, self.mesh_of(ring.triangle)];
+                    let number = [ring.triangle, mesh_of(topology, ring.triangle)];
                     self.faces.push(Face::new(points, number, [neighbor, ends[0], ends[1]]));
                 }
             }
@@ -418,12 +411,6 @@ impl TrackedSamples {
         }
     }
 
-    /// Mesh of a triangle, or [`ANY`].
-    #[inline]
-    fn mesh_of(&self, triangle: u32) -> u32 {
-        self.meshes.get(triangle as usize).copied().unwrap_or(ANY)
-    }
-
     /// Finds an original triangle that belongs to `mesh`. In all poses, it must be within the limit of the midpoint of
     /// `ends`. Returns its index in `below`: `likely` if that triangle qualifies, otherwise the first that does. If
     /// there is none, the error is the square of the smallest distance.
@@ -444,7 +431,7 @@ impl TrackedSamples {
         let middle = (sample as usize).checked_sub(points.len());
         let body = middle.map_or_else(|| points.body(sample), |at| self.middles.triangles[at].corners.body);
         let mesh = match middle {
-            None => self.meshes_of_points.get(sample as usize).copied().unwrap_or(ANY),
+            None => self.meshes_of_points[sample as usize],
             Some(at) => self.middles.triangles[at].mesh,
         };
         Place::new(body, mesh, move |pose| match middle {
@@ -507,6 +494,12 @@ impl TrackedSamples {
             }
         }
     }
+}
+
+/// Mesh of a triangle, or [`ANY`].
+#[inline]
+fn mesh_of(topology: &Topology, triangle: u32) -> u32 {
+    topology.mesh(triangle).unwrap_or(ANY)
 }
 
 fn middle(points: &Points, ends: &[u32], pose: usize) -> Vec3 {

@@ -104,7 +104,7 @@ mod tests {
         let indices = [0, 1, 2, 0, 2, 3, 0, 3, 4, 2, 5, 3];
         let off = |poses: &[Vec<[f32; 3]>], neighbor: u32| {
             let points = Points::new(poses);
-            let topology = Topology::new(&points, &indices, false);
+            let topology = Topology::new(&points, &indices, &[], false);
             assert_eq!(topology.along_border(0), Some([1, 4]));
             assert_eq!(topology.along_border(2).map(|ends| ends.contains(&1)), Some(true));
             deviation(&topology, &points, [0, neighbor], &mut 0).map(|square| square.sqrt() / points.scale())

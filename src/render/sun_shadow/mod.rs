@@ -75,10 +75,8 @@ impl SunShadow {
     pub fn new(scene: &mut Scene, size: u32) -> Result<Self, Error> {
         let gpu = scene.gpu().clone();
         let most = gpu.device().limits().max_texture_dimension_2d;
-        if !(LEAST_SIZE..=most).contains(&size) {
-            let bound = format!("must be {LEAST_SIZE} to {most}, the device's limit");
-            return Err(InputError::new("size", size, bound).into());
-        }
+        let bound = || format!("must be {LEAST_SIZE} to {most}, the device's limit");
+        InputError::check((LEAST_SIZE..=most).contains(&size), "size", size, bound)?;
         let mut renderer = Renderer::new(&gpu, &TargetFormat::depth_only(SHADOW_FORMAT))?.casting();
         renderer.prepare(scene)?;
         let mut view = scene.view(Quality::default())?;
@@ -133,18 +131,14 @@ impl SunShadow {
     /// or not beyond a camera's near plane. After an error, nothing has changed.
     pub fn fit(&mut self, scene: &Scene, views: &mut [&mut View], range: f32) -> Result<(), InputError> {
         self.view.check(scene, "shadow")?;
-        if !(range > 0.0 && range.is_finite()) {
-            return Err(InputError::new("range", range, "must be finite and above 0"));
-        }
+        InputError::check(range > 0.0 && range.is_finite(), "range", range, || "must be finite and above 0")?;
         let mut cameras: Vec<Camera> = Vec::new();
         for (at, view) in views.iter().enumerate() {
             view.check(scene, &format!("views[{at}]"))?;
             let none = || InputError::new(format!("views[{at}].camera"), "none", "must be set before");
             cameras.push(*view.camera().ok_or_else(none)?);
         }
-        if cameras.is_empty() {
-            return Err(InputError::new("views", "none", "must be at least one"));
-        }
+        InputError::check(!cameras.is_empty(), "views", "none", || "must be at least one")?;
         let frusta = cameras.iter().map(|camera| Frustum::new(camera, f64::from(range)));
         let frusta = frusta.collect::<Result<Vec<_>, _>>()?;
         let Fit { camera, texel } = Fit::new(&frusta, scene.light().direction, self.size);

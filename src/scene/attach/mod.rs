@@ -122,9 +122,7 @@ impl Scene {
         }
         let offset = offset.checked("offset")?;
         let largest = offset.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
-        if largest == 0.0 {
-            return Err(InputError::new("offset.scale", 0, "must not be 0 along all axes"));
-        }
+        InputError::check(largest != 0.0, "offset.scale", 0, || "must not be 0 along all axes")?;
         let BoundingSphere { center, radius } = object.sphere;
         let placed = affine_of(&affine(&offset));
         let center = placed.transform_point3(center.as_dvec3()).as_vec3();

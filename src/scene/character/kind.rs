@@ -35,13 +35,8 @@ impl ObjectKind for Character {
         self.let_go(index);
     }
 
-    fn renew(
-        &mut self,
-        gpu: &Gpu,
-        layouts: &SceneLayouts,
-        capacity: usize,
-        chunks: &mut Vec<Chunk>,
-    ) -> Result<(), Error> {
+    fn renew(&mut self, target: MakeOn<'_>, chunks: &mut Vec<Chunk>) -> Result<(), Error> {
+        let MakeOn { gpu, layouts, capacity, .. } = target;
         let model = &self.merged.model;
         let runtimes = Runtime::all(gpu, model, &self.shared, 0..capacity, self.keeps_last)?;
         *chunks = Self::chunks(gpu, layouts, chunks, &runtimes)?;

@@ -68,10 +68,8 @@ impl CharacterLayer {
         bone: impl Fn(&str) -> Result<usize, InputError>,
         capacity: usize,
     ) -> Result<Vec<Self>, InputError> {
-        if masks.len() >= MAX_LAYERS {
-            let bound = format!("must be below {MAX_LAYERS}");
-            return Err(InputError::new("options.layers.len", masks.len(), bound));
-        }
+        let bound = || format!("must be below {MAX_LAYERS}");
+        InputError::check(masks.len() < MAX_LAYERS, "options.layers.len", masks.len(), bound)?;
         let mask = |mask: &LayerMask<'_>| match mask {
             LayerMask::All => Ok(None),
             LayerMask::Below(name) => mask_below(&model.skeleton, bone(name)?).map(Some),
@@ -121,12 +119,8 @@ impl Character {
         (to, seconds, hands_over): (f32, f32, bool),
         now: f64,
     ) -> Result<(), InputError> {
-        if !(0.0..=1.0).contains(&to) {
-            return Err(InputError::new("weight", to, "must be in 0..=1"));
-        }
-        if !(0.0..=1e6).contains(&seconds) {
-            return Err(InputError::new("seconds", seconds, "must be in 0..=1e6"));
-        }
+        InputError::check((0.0..=1.0).contains(&to), "weight", to, || "must be in 0..=1")?;
+        InputError::check((0.0..=1e6).contains(&seconds), "seconds", seconds, || "must be in 0..=1e6")?;
         let layer = self.layer(layer)?;
         if hands_over && layer.mask.is_some() {
             return Err(InputError::new("layer", "masked", "must be a layer on all bones"));

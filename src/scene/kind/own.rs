@@ -89,15 +89,9 @@ impl ObjectKind for OwnKind {
         "of a kind of the caller's"
     }
 
-    fn renew(
-        &mut self,
-        _: &Gpu,
-        _: &SceneLayouts,
-        capacity: usize,
-        chunks: &mut Vec<Chunk>,
-    ) -> Result<(), Error> {
+    fn renew(&mut self, target: MakeOn<'_>, chunks: &mut Vec<Chunk>) -> Result<(), Error> {
         self.is_fresh = true;
-        chunks.iter_mut().for_each(|chunk| chunk.slots = 0..capacity);
+        chunks.iter_mut().for_each(|chunk| chunk.slots = 0..target.capacity);
         Ok(())
     }
 
@@ -232,9 +226,7 @@ fn check(kind: &dyn Kind) -> Result<(), InputError> {
         let bound = format!("must be in 1..={OBJECT_LEVELS}");
         return Err(InputError::new("kind.errors.len", errors.len(), bound));
     }
-    if errors[0] != 0.0 {
-        return Err(InputError::new("kind.errors[0]", errors[0], "must be 0"));
-    }
+    InputError::check(errors[0] == 0.0, "kind.errors[0]", errors[0], || "must be 0")?;
     for (at, pair) in errors.windows(2).enumerate() {
         if !(pair[0] <= pair[1] && pair[1].is_finite()) {
             let bound = format!("must be finite and at least {}, the error before", pair[0]);
@@ -249,19 +241,15 @@ fn check(kind: &dyn Kind) -> Result<(), InputError> {
         return Err(InputError::new("kind.bounding_sphere", value, bound));
     }
     let draws = kind.parts().len() * errors.len();
-    if !(1..=MAX_DRAWS).contains(&draws) {
-        let bound = format!("must be at least 1, and times the number of levels at most {MAX_DRAWS}");
-        return Err(InputError::new("kind.parts.len", kind.parts().len(), bound));
-    }
+    let bound = || format!("must be at least 1, and times the number of levels at most {MAX_DRAWS}");
+    InputError::check((1..=MAX_DRAWS).contains(&draws), "kind.parts.len", kind.parts().len(), bound)?;
     let indices = kind.indices();
     if !indices.usage().contains(wgpu::BufferUsages::INDEX) {
         let value = format!("{:?}", indices.usage());
         return Err(InputError::new("kind.indices.usage", value, "must have INDEX"));
     }
     let count = indices.size() / size_of::<u32>() as u64;
-    if count == 0 {
-        return Err(InputError::new("kind.indices.len", 0, "must be at least 3 indices"));
-    }
+    InputError::check(count != 0, "kind.indices.len", 0, || "must be at least 3 indices")?;
     for (at, part) in kind.parts().iter().enumerate() {
         if part.levels.len() != errors.len() {
             let bound = format!("must be {}, as many as errors", errors.len());

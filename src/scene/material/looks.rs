@@ -91,10 +91,8 @@ impl Looks {
         image: RgbaImage,
     ) -> Result<Option<RgbaImage>, InputError> {
         check_image(gpu, "image", &image)?;
-        if index > self.images.len() {
-            let bound = format!("must be at most {}, which adds an image", self.images.len());
-            return Err(InputError::new("index", index, bound));
-        }
+        let bound = || format!("must be at most {}, which adds an image", self.images.len());
+        InputError::check(index <= self.images.len(), "index", index, bound)?;
         match self.images.get_mut(index) {
             Some(old) => Ok(Some(std::mem::replace(old, image))),
             None => {

@@ -75,10 +75,8 @@ impl ReliefLook {
     fn validate(&self) -> Result<(), InputError> {
         self.material.validate().map_err(|error| error.below("material"))?;
         self.march.validate().map_err(|error| error.below("march"))?;
-        if !(self.world > 0.0 && self.world.is_finite()) {
-            let bound = "must be finite and above 0: the length of a unit of uv";
-            return Err(InputError::new("mesh", self.world, bound));
-        }
+        let bound = || "must be finite and above 0: the length of a unit of uv";
+        InputError::check(self.world > 0.0 && self.world.is_finite(), "mesh", self.world, bound)?;
         Ok(())
     }
 

@@ -12,21 +12,24 @@ impl Object {
     /// Doubles the capacity for instances. If this fails, nothing changes.
     pub(in crate::scene) fn grow(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
         let capacity = self.instances.capacity();
-        if capacity >= MAX_CAPACITY {
-            let bound = format!("must be at most {MAX_CAPACITY}: add another object");
-            return Err(InputError::new("object.capacity", 2 * capacity, bound).into());
-        }
+        let bound = || format!("must be at most {MAX_CAPACITY}: add another object");
+        InputError::check(capacity < MAX_CAPACITY, "object.capacity", 2 * capacity, bound)?;
         let capacity = (2 * capacity).min(MAX_CAPACITY);
-        self.kind.renew(gpu, layouts, capacity, &mut self.chunks)?;
+        self.renew(gpu, layouts, capacity)?;
         self.instances.grow(capacity);
         Ok(())
     }
 
     /// Starts the object afresh: all instances are uploaded again, and the kind's state on the device is reset.
     pub(in crate::scene) fn refresh(&mut self, gpu: &Gpu, layouts: &SceneLayouts) -> Result<(), Error> {
-        self.kind.renew(gpu, layouts, self.instances.capacity(), &mut self.chunks)?;
+        self.renew(gpu, layouts, self.instances.capacity())?;
         self.instances.change_all();
         Ok(())
+    }
+
+    fn renew(&mut self, gpu: &Gpu, layouts: &SceneLayouts, capacity: usize) -> Result<(), Error> {
+        let target = MakeOn { gpu, layouts, looks: self.looks.as_ref(), capacity };
+        self.kind.renew(target, &mut self.chunks)
     }
 
     /// Creates the object's device resources on another device, without using them yet.

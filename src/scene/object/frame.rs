@@ -30,8 +30,7 @@ impl Object {
         now: f64,
     ) -> Result<bool, Error> {
         let all = Chunk::new(0..self.instances.capacity(), Vec::new());
-        let lod = self.lod_object(&all);
-        let lod = LodObject { metric_scale: lod.metric_scale / self.lod_bias, ..lod };
+        let lod = self.biased_lod_object(&all, 1.0);
         let seen = SeenBy { views, object: &lod, instances: self.instances.all(), now };
         let Provided { lod_bias, replaced } = self.kind.provide(gpu, layouts, &seen, &mut self.chunks)?;
         self.is_rebound |= replaced == Replaced::Buffers;

@@ -59,7 +59,7 @@ pub(crate) struct Object {
     is_rebound: bool,
     /// Number of the object's handle, which shading reads.
     pub(super) handle: u32,
-    pub(super) is_shown: bool,
+    pub(super) is_visible: bool,
     /// Data of the object that still waits on the host to be uploaded.
     pub(super) pending: Option<PendingUploads>,
     /// Materials and images of a mesh or a character; `None` for other kinds.
@@ -97,7 +97,7 @@ impl Object {
             is_retuned: false,
             is_rebound: false,
             handle: 0,
-            is_shown: true,
+            is_visible: true,
             pending: None,
             looks: None,
             draws,
@@ -187,6 +187,11 @@ impl Object {
 
     /// A chunk of the object in the format of the kernels that select levels.
     pub(super) fn lod_object(&self, chunk: &Chunk) -> LodObject {
+        self.biased_lod_object(chunk, self.lod_bias)
+    }
+
+    /// As [`Self::lod_object`], with this LOD bias instead of the object's.
+    fn biased_lod_object(&self, chunk: &Chunk, lod_bias: f32) -> LodObject {
         let triangles = self.triangles();
         let of = LodObject {
             first: chunk.range.first,
@@ -195,7 +200,7 @@ impl Object {
             first_list: chunk.range.first_list,
             first_draw: chunk.range.first_draw,
             parts: self.parts() as u32,
-            metric_scale: self.lod_bias * self.error_fraction(),
+            metric_scale: lod_bias * self.error_fraction(),
             thresholds: error_vectors(&self.thresholds()).map(Into::into),
             point: self.model_box[0].into(),
             half_size: self.model_box[1].into(),

@@ -84,9 +84,7 @@ pub(in crate::scene) async fn made(
 
 /// Generates the heights of patches by a recipe.
 async fn generated(gpu: &Gpu, recipe: &Recipe, patches: &[[i32; 2]]) -> Result<Vec<Fields>, Error> {
-    if patches.is_empty() {
-        return Err(InputError::new("patches", "none", "must be at least one").into());
-    }
+    InputError::check(!patches.is_empty(), "patches", "none", || "must be at least one")?;
     check_once(patches)?;
     let generator = Generator::new(gpu, recipe.clone())?;
     generator.generate_async(gpu, patches, MARGIN, &mut |_| ()).await

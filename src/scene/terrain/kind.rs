@@ -42,7 +42,7 @@ impl ObjectKind for Terrain {
     }
 
     /// Terrain does not grow. Only the blend of two recipes is computed again.
-    fn renew(&mut self, _: &Gpu, _: &SceneLayouts, _: usize, _: &mut Vec<Chunk>) -> Result<(), Error> {
+    fn renew(&mut self, _: MakeOn<'_>, _: &mut Vec<Chunk>) -> Result<(), Error> {
         self.morphing.iter_mut().for_each(Morphing::refresh);
         Ok(())
     }

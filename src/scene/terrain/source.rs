@@ -117,10 +117,8 @@ impl TerrainSource {
     /// recipe of terrain made from fields. [`InputError`] also if [`Morph::validate`] refuses the blend.
     pub(super) fn check_target(&self) -> Result<(), InputError> {
         let Some((target, morph)) = &self.target else { return Ok(()) };
-        if self.fields().is_some() {
-            let bound = "must not be given for terrain made from fields: blend them with a pass";
-            return Err(InputError::new("target", "a recipe", bound));
-        }
+        let bound = || "must not be given for terrain made from fields: blend them with a pass";
+        InputError::check(self.fields().is_none(), "target", "a recipe", bound)?;
         let below = |error: InputError| error.below("target");
         check_target(self.config(), &target.config).map_err(below)?;
         target.validate(&self.patches, 1).map_err(below)?;
@@ -168,10 +166,8 @@ pub(super) fn check_patches(
     fields: &Fields,
     patches: &[[i32; 2]],
 ) -> Result<(), InputError> {
-    if patches.len() > fields.count as usize {
-        let bound = format!("must be at most {}, the fields' count", fields.count);
-        return Err(InputError::new("patches.len", patches.len(), bound));
-    }
+    let bound = || format!("must be at most {}, the fields' count", fields.count);
+    InputError::check(patches.len() <= fields.count as usize, "patches.len", patches.len(), bound)?;
     let edge = i64::from(config.patch_size) - 1;
     for (at, patch) in patches.iter().enumerate() {
         let is_far = |index: &i32| {

@@ -70,10 +70,8 @@ impl View {
     /// # Errors
     /// [`InputError`] for a time that is negative or not finite.
     pub fn frame_took(&mut self, milliseconds: f32) -> Result<(), InputError> {
-        if !(0.0..f32::INFINITY).contains(&milliseconds) {
-            let bound = "must be finite, and not negative";
-            return Err(InputError::new("milliseconds", milliseconds, bound));
-        }
+        let bound = || "must be finite, and not negative";
+        InputError::check((0.0..f32::INFINITY).contains(&milliseconds), "milliseconds", milliseconds, bound)?;
         if let Some(limit) = self.quality.milliseconds {
             self.budget.pacer.get_or_insert_default().took(milliseconds, limit);
         }

@@ -236,10 +236,8 @@ impl View {
     /// # Errors
     /// [`InputError`] for more than four cameras, and for a camera that [`View::set`] would refuse.
     pub fn set_lod_cameras(&mut self, cameras: &[Camera]) -> Result<(), InputError> {
-        if cameras.len() > VIEW_CAMERAS as usize {
-            let bound = format!("must be at most {VIEW_CAMERAS}");
-            return Err(InputError::new("cameras.len", cameras.len(), bound));
-        }
+        let bound = || format!("must be at most {VIEW_CAMERAS}");
+        InputError::check(cameras.len() <= VIEW_CAMERAS as usize, "cameras.len", cameras.len(), bound)?;
         for (at, camera) in cameras.iter().enumerate() {
             let checked =
                 camera.validate().and_then(|()| lod_camera(camera, camera.cell, self.quality.pixels));

@@ -82,10 +82,8 @@ pub(super) fn joined(
 /// For each mesh, the index of its first vertex in the joined mesh.
 fn starts(meshes: &[&Mesh]) -> Result<Vec<u32>, InputError> {
     let vertices: usize = meshes.iter().map(|mesh| mesh.vertices()).sum();
-    if vertices > MAX_VERTICES {
-        let bound = format!("must be at most {MAX_VERTICES} in all meshes that are merged");
-        return Err(InputError::new("model.meshes.positions.len", vertices, bound));
-    }
+    let bound = || format!("must be at most {MAX_VERTICES} in all meshes that are merged");
+    InputError::check(vertices <= MAX_VERTICES, "model.meshes.positions.len", vertices, bound)?;
     let mut next = 0;
     let start = |mesh: &&Mesh| {
         next += mesh.vertices() as u32;

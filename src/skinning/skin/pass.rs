@@ -81,10 +81,8 @@ impl SkinPass {
         active: &ActiveClusters,
     ) -> Result<Job, Error> {
         let keeps = pages.last > 0;
-        if keeps != active.keeps_last {
-            let bound = format!("must be {keeps}, as the pages have or lack last positions");
-            return Err(InputError::new("active.keeps_last", active.keeps_last, bound).into());
-        }
+        let bound = || format!("must be {keeps}, as the pages have or lack last positions");
+        InputError::check(keeps == active.keeps_last, "active.keeps_last", active.keeps_last, bound)?;
         let (morphed, dual) = (mesh.targets > 0, self.blend == Blend::DualQuaternion);
         let kernel = match keeps {
             true => &bindings::kernel(gpu, &bindings::Constants { dual, morphed, paged: true, keep: true })?,

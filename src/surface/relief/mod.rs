@@ -152,10 +152,8 @@ impl March {
     pub fn validate(&self) -> Result<(), InputError> {
         let [low, high] = self.steps;
         InputError::check_within("steps[0]", low, 1..=MAX_STEPS)?;
-        if !(low..=MAX_STEPS).contains(&high) {
-            let bound = format!("must be in {low}..={MAX_STEPS}: at least steps[0]");
-            return Err(InputError::new("steps[1]", high, bound));
-        }
+        let bound = || format!("must be in {low}..={MAX_STEPS}: at least steps[0]");
+        InputError::check((low..=MAX_STEPS).contains(&high), "steps[1]", high, bound)?;
         InputError::check_most("binary_steps", self.binary_steps, MAX_BINARY)
     }
 }

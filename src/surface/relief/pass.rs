@@ -47,10 +47,8 @@ impl ReliefPass {
     ) -> Result<Job, Error> {
         march.validate()?;
         textures.check(self.method, march)?;
-        if hits.len() < rays.len() {
-            let bound = format!("must be at least {}, one a ray", rays.len());
-            return Err(InputError::new("hits.len", hits.len(), bound).into());
-        }
+        let bound = || format!("must be at least {}, one a ray", rays.len());
+        InputError::check(hits.len() >= rays.len(), "hits.len", hits.len(), bound)?;
         let uniform = Uniform::new(gpu, "march", &SurfaceMarch::from(*march))?;
         let [heights, acceleration] = textures.views();
         let group = bindings::Group {

@@ -45,14 +45,10 @@ impl SurfaceTextures {
 
     /// Returns an error unless the textures were computed for `method` and for the address mode of `march`.
     pub fn check(&self, method: ReliefMethod, march: &March) -> Result<(), InputError> {
-        if self.method != method {
-            let bound = format!("must be {}, which its maps were made for", self.method.name());
-            return Err(InputError::new("method", method.name(), bound));
-        }
-        if self.address != march.address {
-            let bound = format!("must be {}, which its maps were made for", self.address.name());
-            return Err(InputError::new("march.address", march.address.name(), bound));
-        }
+        let bound = || format!("must be {}, which its maps were made for", self.method.name());
+        InputError::check(self.method == method, "method", method.name(), bound)?;
+        let bound = || format!("must be {}, which its maps were made for", self.address.name());
+        InputError::check(self.address == march.address, "march.address", march.address.name(), bound)?;
         Ok(())
     }
 }

@@ -67,10 +67,8 @@ impl TangentPass {
         tangents: &Buffer<[f32; 4]>,
     ) -> Result<Job, Error> {
         let vertices = mesh.positions.len();
-        if tangents.len() < vertices {
-            let bound = format!("must be at least {vertices}, one a vertex");
-            return Err(InputError::new("tangents.len", tangents.len(), bound).into());
-        }
+        let bound = || format!("must be at least {vertices}, one a vertex");
+        InputError::check(tangents.len() >= vertices, "tangents.len", tangents.len(), bound)?;
         let vertices = vertices as u32;
         let uniform = Uniform::new(gpu, "tangent", &TangentParams { vertices })?;
         let group = bindings::Group {

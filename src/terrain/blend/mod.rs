@@ -64,12 +64,10 @@ impl Shading {
 
 /// Largest allowed difference between a channel of a colour map and its CPU reference: one level of 255.
 ///
-/// Positions in textures and the cells of the variation are integers, and all other computations are continuous. A weight has an
-/// error of at most 2^-16. The height contributes about 2^-23 · (|height| + |max|) / (max − min). The slope contributes 115 times
-/// the steepness's error of 2^-20, for transitions at least one degree wide. The error of a colour has two parts: the error of a
-/// weight divided by the sum of weights, and 1/100 level from the polynomial for the sRGB curve. If the sum of weights is at
-/// least [`MIN_TOTAL`], the error of a colour is far below one level. Rounding to 8 bits may still go either way.
+/// Rounding moves the weights of zones. The bound therefore holds only where the weights are known well enough, compared with their
+/// sum: where the linear colour is off by at most [`COLOR_BOUND`]. `docs/rounding-bounds.md` has the derivation, and the error of
+/// the linear colour at a pixel.
 pub const MAP_BOUND: u8 = 1;
 
-/// Smallest sum of weights for which [`MAP_BOUND`] holds. The bound also holds for a sum of exactly 0.
-pub const MIN_TOTAL: f32 = 1.0 / 64.0;
+/// Largest error of a pixel's linear colour for which [`MAP_BOUND`] holds: 0.92 levels where the sRGB curve is steepest.
+pub const COLOR_BOUND: f32 = 2.8e-4;

@@ -44,10 +44,8 @@ impl BorderPass {
             return Err(InputError::new("width", width, bound).into());
         }
         let places = places(parts, size)?;
-        if neighbours.len() > places.len() {
-            let bound = format!("must be at most {}, the patches in the parts", places.len());
-            return Err(InputError::new("neighbours.len", neighbours.len(), bound).into());
-        }
+        let bound = || format!("must be at most {}, the patches in the parts", places.len());
+        InputError::check(neighbours.len() <= places.len(), "neighbours.len", neighbours.len(), bound)?;
         let visits = visits(neighbours, &places)?;
         let entries: Vec<_> =
             (0..parts.len()).map(|part| Entries::new(gpu, part, &visits)).collect::<Result<_, _>>()?;

@@ -54,10 +54,8 @@ impl DespikePass {
         windows.check("windows", 1)?;
         cropped.heights.check_holds("cropped.heights", windows.points(1))?;
         let grid = features.grid(0);
-        if grid.width != windows.width {
-            let bound = format!("must be that of the windows, {}", windows.width);
-            return Err(InputError::new("features.width", grid.width, bound).into());
-        }
+        let bound = || format!("must be that of the windows, {}", windows.width);
+        InputError::check(grid.width == windows.width, "features.width", grid.width, bound)?;
         let params =
             DespikeParams { features: grid, width: windows.width, threshold: despike.fixed_threshold() };
         let group = bindings::Group {

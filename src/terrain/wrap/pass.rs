@@ -40,10 +40,8 @@ impl WrapPass {
         buffers: HeightBuffers<'_>,
     ) -> Result<HeightJob, Error> {
         config.validate()?;
-        if config.border == Border::Seamless {
-            let bound = "must be \"wrap\" or {\"blend\": samples} for patches by themselves";
-            return Err(InputError::new("border", "\"seamless\"", bound).into());
-        }
+        let bound = || "must be \"wrap\" or {\"blend\": samples} for patches by themselves";
+        InputError::check(config.border != Border::Seamless, "border", "\"seamless\"", bound)?;
         self.0.prepare(gpu, config, Windows { count, apron: 0 }, feature_capacity, buffers)
     }
 }

@@ -219,7 +219,7 @@ impl Reducer<'_> {
         };
         !differ
             && self.topology.keeps_topology(point, neighbor)
-            && (self.meshes.is_empty() || self.topology.keeps_meshes(point, neighbor, &self.meshes))
+            && self.topology.keeps_meshes(point, neighbor)
             && self.tracked_samples.as_mut().is_none_or(|tracked_samples| {
                 tracked_samples.keeps_near(&self.topology, &self.points, point, neighbor)
             })

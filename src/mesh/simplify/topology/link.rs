@@ -45,19 +45,21 @@ impl Topology {
 
 impl Topology {
     /// Whether every mesh that has a triangle at a point around a collapse still has one at this point afterwards.
-    /// `meshes` has the mesh of each triangle.
-    pub(crate) fn keeps_meshes(&mut self, point: u32, neighbor: u32, meshes: &[u32]) -> bool {
+    pub(crate) fn keeps_meshes(&mut self, point: u32, neighbor: u32) -> bool {
+        if self.meshes.is_empty() {
+            return true;
+        }
         let vanishing: Vec<(u32, u32)> = (self.ring(point).iter().zip(self.around(point)))
             .filter(|([next, last], _)| *next == neighbor || *last == neighbor)
             .map(|([next, last], number)| (*number, if *next == neighbor { *last } else { *next }))
             .collect();
         vanishing.iter().for_each(|(_, other)| self.refresh(*other));
-        let meets = |at: u32, mesh: u32| {
+        let meets = |at: u32, mesh: Option<u32>| {
             let stays = |number: &&u32| vanishing.iter().all(|(vanished, _)| vanished != *number);
-            self.around(at).iter().filter(stays).any(|number| meshes[*number as usize] == mesh)
+            self.around(at).iter().filter(stays).any(|number| self.mesh(*number) == mesh)
         };
         vanishing.iter().all(|(number, other)| {
-            let mesh = meshes[*number as usize];
+            let mesh = self.mesh(*number);
             meets(*other, mesh) && (meets(point, mesh) || meets(neighbor, mesh))
         })
     }

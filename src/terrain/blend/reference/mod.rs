@@ -9,7 +9,7 @@ use crate::srgb;
 use crate::terrain::blend::{Shading, WeightMode};
 use crate::terrain::cover::{Cover, ShaderZone};
 use crate::terrain::normals::reference::unit_normal;
-pub use texturing::{color_variation, texel_indices, tiles_of, triplanar_weights, varied};
+pub use texturing::{color_variation, texel, texel_indices, tiles_of, triplanar_weights, varied};
 
 /// Steepness of a unit normal: the tangent of half its angle to the vertical. 0 on level ground, 1 on a vertical wall.
 pub fn steepness(normal: [f32; 3]) -> f32 {
@@ -27,7 +27,7 @@ pub fn zone_weight(zone: &ShaderZone, height: f32, steep: f32) -> f32 {
 }
 
 /// Factor by which the weight of a zone is multiplied, 0 to 1. `texel_height` is the height in the zone's texture, 0 to 1.
-fn prominence(zone: &ShaderZone, texel_height: f32) -> f32 {
+pub fn prominence(zone: &ShaderZone, texel_height: f32) -> f32 {
     let squared = (1.0 + zone.height_blend * (0.9375 * texel_height - 0.9375)).powi(2);
     squared * squared
 }

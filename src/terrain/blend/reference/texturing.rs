@@ -34,7 +34,7 @@ pub fn texel_indices(cover: &Cover, zone: &MapZone, [east, up, south]: [u32; 3])
 }
 
 /// Linear colour (red, green, blue) and height of a zone's texture at a texture position.
-pub(super) fn texel(cover: &Cover, zone: &MapZone, normal: [f32; 3], tiles: [u32; 3]) -> [f32; 4] {
+pub fn texel(cover: &Cover, zone: &MapZone, normal: [f32; 3], tiles: [u32; 3]) -> [f32; 4] {
     let texel = |index: usize| cover.texels[index].map(|channel| f32::from(channel) / 65_535.0);
     let planes: Vec<[f32; 4]> = texel_indices(cover, zone, tiles).into_iter().map(texel).collect();
     let [above] = planes[..] else {
