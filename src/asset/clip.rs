@@ -182,6 +182,11 @@ impl Clip {
         let at = if track.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key };
         self.values[track.first_value as usize + at]
     }
+
+    /// Size of tracks, times and values together, in bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&*self.tracks) + size_of_val(&*self.times) + size_of_val(&*self.values)
+    }
 }
 
 #[cfg(test)]
