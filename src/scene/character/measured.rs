@@ -7,15 +7,15 @@ use crate::gpu::Gpu;
 use crate::skinning::vertex::Vertex;
 
 impl Character {
-    /// The model matrices of all bones of all instances after the last frame, and the number of bones of all skeletons. The bones of
-    /// the whole skeleton come first.
+    /// The model matrices of the whole skeletons of all instances after the last frame, and the number of bones of each. Those of an
+    /// instance with a reduced skeleton are outdated.
     pub fn read_matrices(&self, gpu: &Gpu) -> Result<(Vec<Affine>, usize), Error> {
-        let bones = self.shared.tiers.skeleton.len();
+        let (stride, bones) = (self.shared.tiers.skeleton.len(), self.merged.model.skeleton.len());
         let mut all = Vec::with_capacity(bones * self.plays.len());
         for runtime in &self.runtimes {
-            all.extend(
-                runtime.frame.model_matrices().read_blocking(gpu)?.drain(..bones * runtime.slots.len()),
-            );
+            let found = runtime.frame.model_matrices().read_blocking(gpu)?;
+            let of_instances = found.chunks_exact(stride).take(runtime.slots.len());
+            of_instances.for_each(|matrices| all.extend_from_slice(&matrices[..bones]));
         }
         Ok((all, bones))
     }

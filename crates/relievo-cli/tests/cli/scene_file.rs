@@ -344,3 +344,30 @@ fn dumps_hold_the_bones_that_were_drawn() {
     assert!(seen > 3, "{seen} instances were drawn");
     assert!(matrices.next().is_none());
 }
+
+/// A character whose gate bounds no error has no bound in the report, and beyond the range only a bone of priority 1 is sampled.
+#[test]
+fn characters_have_the_gates_of_their_file() {
+    use relievo::asset::Model;
+    let folder = Folder::new();
+    let bones = |priorities: Value| {
+        let mut scene = good();
+        scene["characters"][0]["gate"] = json!({"mode": "skip-period", "range": [1, 2]});
+        scene["characters"][0]["influences"] = json!({"most": 1});
+        scene["characters"][0]["priorities"] = priorities;
+        let run = folder.run(&scene.to_string(), &["--frames", "3", "--rate", "20", "--size", "96x64"]);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let report = folder.report();
+        let object = &report["frames"][2]["objects"][3];
+        assert_eq!(
+            (&object["pixels"], &report["frames"][2]["objects"][1]["pixels"]),
+            (&Value::Null, &json!(1.0))
+        );
+        object["bones"].as_u64().expect("a count")
+    };
+    let names = Model::from_file(&folder.path("rig.glb")).expect("valid").skeleton;
+    let all: Value =
+        (0..names.len()).map(|bone| (bone.to_string(), json!(1))).collect::<serde_json::Map<_, _>>().into();
+    assert_eq!(bones(json!({})), 0);
+    assert!(bones(all) > 0);
+}
