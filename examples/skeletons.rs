@@ -51,9 +51,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     renderer.prepare(&scene)?;
     let (mut pictures, mut captions) = (Vec::new(), Vec::new());
     for skeleton in scene.skeletons(crowd)? {
-        // What a pixel is at the model, in model units. Bones may use all of it, and a skeleton a quarter.
+        // What a pixel is at the model, in model units. Bones and their skeleton may use all of it.
         let pixel = 2.0 * 0.85 * sphere.radius / SIZE[1] as f32;
-        let mut view = scene.view(Quality::pixels(1.2 * skeleton.error / (0.25 * pixel)))?;
+        let mut view = scene.view(Quality::pixels(1.3 * skeleton.error / pixel))?;
         view.set(Camera::looking_at(eye, sphere.center, field, near_and_far, SIZE))?;
         for step in 0..STEPS {
             let seconds = model.clips[0].duration() * step as f32 / STEPS as f32;

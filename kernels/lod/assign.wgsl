@@ -12,9 +12,6 @@ const FADE_STEPS: f32 = 64.0;
 const MAX_UNITS: f32 = 1073741760.0;
 // Largest number of skeleton tiers.
 const MAX_TIERS: u32 = 4u;
-// Largest error of a skeleton tier, as a fraction of the displacement that bones may use. The rest is for bones that the gate
-// skips.
-const TIER_FRACTION: f32 = 0.25;
 // An instance changes to a coarser tier only if the tier's error is below this fraction of its limit (hysteresis).
 const TIER_HYSTERESIS: f32 = 0.8;
 
@@ -44,6 +41,9 @@ struct AssignParams {
     fade_rate: f32,
     // Allowed displacement up to which an instance's motion has full weight, in model units, above 0.
     full_weight_allowed: f32,
+    // Largest error of a skeleton tier, as a fraction of the displacement that bones may use, 0 to 1. The rest is for bones that
+    // the gate skips.
+    tier_fraction: f32,
     // Error of each skeleton tier in model units, ascending from 0. A tier that does not exist has an error that nothing allows.
     tier_errors: vec4<f32>,
 }
@@ -105,7 +105,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     // displacement of bones is 0 for a character with an attached mesh.
     let carries = (flags & INSTANCE_CARRIES) != 0u;
     let of_bones = params.bone_fraction * within;
-    let limit = TIER_FRACTION * of_bones;
+    let limit = params.tier_fraction * of_bones;
     let coarsest = tier_within(limit);
     let last = lod_flags_tier(lods[instance].flags);
     let held = clamp(last, tier_within(TIER_HYSTERESIS * limit), coarsest);

@@ -32,8 +32,9 @@ pub struct CharacterOptions<'a> {
     pub priorities: BTreeMap<&'a str, f32>,
     /// Reduced skeletons for distant instances, at most 3, each with fewer bones than the one before. Empty by default.
     ///
-    /// An instance uses the coarsest skeleton whose error is at most a quarter of the displacement that bones may have
-    /// ([`ErrorBudget::bones`](crate::scene::ErrorBudget::bones)). Bones, clips and influences change together. Each skeleton takes
+    /// An instance uses the coarsest skeleton whose error is at most the displacement that bones may have
+    /// ([`ErrorBudget::bones`](crate::scene::ErrorBudget::bones)); under [`BoneGate::Bounded`] at most a quarter of it, as the gate
+    /// needs the rest. Bones, clips and influences change together. Each skeleton takes
     /// memory for its bones in every instance; [`Scene::skeletons`](crate::scene::Scene::skeletons) returns it.
     ///
     /// An instance keeps the whole skeleton while it carries an attached mesh, while bones of it are driven

@@ -8,8 +8,8 @@ const CELL_SIZE: f32 = 256.0;
 const INSTANCE_ALIVE = 1u;
 // Instance flag: the instance casts shadows.
 const INSTANCE_CASTS = 2u;
-// Instance flag: the instance is a character with an attached mesh. Its bones are sampled in every frame in which a view sees
-// the character.
+// Instance flag: the instance is a character with an attached mesh. No displacement is allowed to its bones, so the gate that
+// bounds errors samples them in every frame in which a view sees the character.
 const INSTANCE_CARRIES = 4u;
 // Instance flag: the instance is a mesh that is attached to a bone. Its placement is stored only per view, as rows of a matrix.
 const INSTANCE_FOLLOWS = 8u;

@@ -3,7 +3,7 @@
 //!
 //! [`select`](super::select) gives the allowed displacement, in model units. One fraction of it goes to bones that are not
 //! sampled, and one to influences that fade out. The remainder is for levels of detail of the mesh. A reduced skeleton is used
-//! where its error is at most a quarter of the bones' fraction. Ω ([`Range`](crate::animation::lod::Range)) and the fade by distance
+//! where its error is at most a part of the bones' fraction. Ω ([`Range`](crate::animation::lod::Range)) and the fade by distance
 //! ([`FadeRange`](crate::skinning::instance_lod::FadeRange)) follow from the distance of the nearest eye. [`decide`](super::decide)
 //! gives the finest level that any view draws; this level is skinned. An instance that no view sees is neither sampled nor
 //! skinned.
@@ -53,6 +53,7 @@ impl AssignParams {
             let bound = "must be above 0 and finite";
             return Err(InputError::new("params.full_weight_allowed", self.full_weight_allowed, bound));
         }
+        check_fraction("params.tier_fraction".to_owned(), self.tier_fraction)?;
         let errors = self.tier_errors.to_array();
         if errors[0] != 0.0 || !errors.is_sorted() {
             return Err(InputError::new("params.tier_errors", self.tier_errors, "must ascend from 0"));

@@ -4,7 +4,7 @@ use super::AssignParams;
 use crate::animation::lod::{FULL_WEIGHT, OMEGA_ONE};
 use crate::animation::{BoneSampling, Lod};
 use crate::shared::lod::allowed::Allowed;
-use crate::shared::lod::assign::{FADE_STEPS, MAX_TIERS, MAX_UNITS, TIER_FRACTION, TIER_HYSTERESIS};
+use crate::shared::lod::assign::{FADE_STEPS, MAX_TIERS, MAX_UNITS, TIER_HYSTERESIS};
 use crate::skinning::instance_lod::InstanceLod;
 
 /// Inputs of an assignment for one instance.
@@ -54,7 +54,7 @@ pub fn tier(params: &AssignParams, instance: &AssignInstance) -> u32 {
     if instance.carries || instance.is_whole {
         return 0;
     }
-    let limit = TIER_FRACTION * (params.bone_fraction * instance.allowed.displacement);
+    let limit = params.tier_fraction * (params.bone_fraction * instance.allowed.displacement);
     let errors = params.tier_errors.to_array();
     let within = |limit: f32| (1..MAX_TIERS).rfind(|tier| errors[*tier as usize] <= limit).unwrap_or(0);
     instance.last_tier.clamp(within(TIER_HYSTERESIS * limit), within(limit))

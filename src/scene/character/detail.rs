@@ -21,6 +21,9 @@ pub(in crate::scene) const TICKS: f64 = 65_536.0;
 /// A character's motion has full weight in a budget of bones if the views allow it no more than this fraction of its radius.
 const FULL_WEIGHT_RADII: f32 = 1.0 / 1024.0;
 
+/// Largest error of a skeleton under [`BoneGate::Bounded`], as a fraction of the displacement that bones may have.
+const TIER_FRACTION: f32 = 0.25;
+
 /// One skeleton of a character: the whole one, or a reduced one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SkeletonStatistics {
@@ -67,6 +70,7 @@ impl Detail {
             omega_rate,
             fade_start: 0.0,
             fade_rate: 0.0,
+            tier_fraction: if options.gate == BoneGate::Bounded { TIER_FRACTION } else { 1.0 },
             full_weight_allowed: (FULL_WEIGHT_RADII * radius).max(f32::MIN_POSITIVE),
             tier_errors: std::array::from_fn::<f32, MAX_TIERS, _>(|tier| {
                 tiers.errors.get(tier).copied().unwrap_or(f32::MAX)

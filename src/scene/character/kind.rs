@@ -38,7 +38,7 @@ impl ObjectKind for Character {
     fn renew(&mut self, target: MakeOn<'_>, chunks: &mut Vec<Chunk>) -> Result<(), Error> {
         let MakeOn { gpu, layouts, capacity, .. } = target;
         let model = &self.merged.model;
-        let runtimes = Runtime::all(gpu, model, &self.shared, 0..capacity, self.keeps_last)?;
+        let runtimes = Runtime::all(gpu, model, &self.shared, &self.room(capacity))?;
         *chunks = Self::chunks(gpu, layouts, chunks, &runtimes)?;
         self.runtimes = runtimes;
         self.start_afresh(capacity);
@@ -50,7 +50,7 @@ impl ObjectKind for Character {
         Box::pin(async move {
             let model = &self.merged.model;
             let shared = self.shared.on(gpu, model)?;
-            let runtimes = Runtime::all(gpu, model, &shared, 0..capacity, self.keeps_last)?;
+            let runtimes = Runtime::all(gpu, model, &shared, &self.room(capacity))?;
             let first = self.first_chunk(gpu, layouts, looks.unwrap_or(&Looks::NONE), &runtimes)?;
             let chunks = Self::chunks(gpu, layouts, &[first], &runtimes)?;
             Ok(OnDevice { chunks, other: Box::new((shared, runtimes)) })

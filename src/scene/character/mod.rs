@@ -32,7 +32,7 @@ pub use detail::SkeletonStatistics;
 pub(super) use detail::TICKS;
 use driven::Driven;
 use layers::{CharacterLayer, Reach};
-use runtime::{Runtime, Shared};
+use runtime::{Room, Runtime, Shared};
 
 /// A character and all of its instances.
 #[derive(Debug)]
@@ -99,7 +99,7 @@ impl Character {
         let radii: Vec<_> = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
         let reach = (!layers.is_empty()).then(|| Reach::new(model, &radii));
         let plays = vec![Playing::REST; capacity];
-        let runtimes = Runtime::all(gpu, model, &shared, 0..capacity, keeps_last)?;
+        let runtimes = Runtime::all(gpu, model, &shared, &Room { slots: 0..capacity, capacity, keeps_last })?;
         let mut changed = Changed::default();
         changed.all(capacity);
         let (epoch, is_memory_short) = (0.0, false);
@@ -125,6 +125,11 @@ impl Character {
             is_memory_short,
             held: Vec::new(),
         })
+    }
+
+    /// All instances of the character, for `capacity` instances.
+    fn room(&self, capacity: usize) -> Room {
+        Room { slots: 0..capacity, capacity, keeps_last: self.keeps_last }
     }
 
     fn start_afresh(&mut self, capacity: usize) {

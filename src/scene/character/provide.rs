@@ -9,7 +9,7 @@ use crate::scene::object_kind::{Provided, Replaced, SeenBy};
 use crate::scene::paging::{Paging, Seen};
 
 use super::Character;
-use super::runtime::{Runtime, is_out_of_memory};
+use super::runtime::{Room, Runtime, is_out_of_memory};
 
 impl Character {
     /// Allocates the pages that a frame's views need. A chunk is divided if its pages would exceed the device's largest
@@ -52,15 +52,15 @@ impl Character {
         if self.is_memory_short {
             return Ok(());
         }
-        let mut at = 0;
+        let (capacity, keeps_last, mut at) = (self.plays.len(), self.keeps_last, 0);
         while let Some(Runtime { slots, paging, .. }) = self.runtimes.get(at) {
             let ranges = halved(slots.clone(), |part| seen.fits(part, paging, 1.0));
             let replaced = at;
             if ranges.len() > 1 {
                 let model = &self.merged.model;
-                let parts = ranges
-                    .into_iter()
-                    .map(|part| Runtime::all(gpu, model, &self.shared, part, self.keeps_last));
+                let parts = ranges.into_iter().map(|slots| {
+                    Runtime::all(gpu, model, &self.shared, &Room { slots, capacity, keeps_last })
+                });
                 let parts = parts.collect::<Result<Vec<_>, Error>>();
                 if is_out_of_memory(&parts) {
                     // Another attempt in every frame would cost more than it gains.

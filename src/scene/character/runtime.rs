@@ -1,5 +1,6 @@
 //! Device data of a chunk: a group of a character's instances.
 
+use std::borrow::Cow;
 use std::iter::repeat;
 use std::ops::Range;
 use std::sync::Arc;
@@ -68,6 +69,17 @@ impl Shared {
     }
 }
 
+/// Instances to make device data for.
+#[derive(Debug, Clone)]
+pub(in crate::scene) struct Room {
+    /// Range of the instances in the object's instance array.
+    pub slots: Range<usize>,
+    /// Number of instances for which the object has memory.
+    pub capacity: usize,
+    /// Whether the vertex positions of the last frame are kept.
+    pub keeps_last: bool,
+}
+
 /// Device data of a chunk of a character's instances.
 #[derive(Debug)]
 pub(in crate::scene) struct Runtime {
@@ -92,16 +104,10 @@ pub(in crate::scene) struct Runtime {
 impl Runtime {
     /// Creates the chunks for a range of instances. All instances start afresh. A range is halved until its buffers fit into
     /// the device's bindings.
-    pub fn all(
-        gpu: &Gpu,
-        model: &Model,
-        shared: &Shared,
-        slots: Range<usize>,
-        keeps_last: bool,
-    ) -> Result<Vec<Self>, Error> {
-        let (mut open, mut done) = (vec![slots], Vec::new());
+    pub fn all(gpu: &Gpu, model: &Model, shared: &Shared, room: &Room) -> Result<Vec<Self>, Error> {
+        let (mut open, mut done) = (vec![room.slots.clone()], Vec::new());
         while let Some(slots) = open.pop() {
-            match Self::new(gpu, model, shared, slots.clone(), keeps_last) {
+            match Self::new(gpu, model, shared, &Room { slots: slots.clone(), ..*room }) {
                 Ok(runtime) => done.push(runtime),
                 Err(Error::Gpu(GpuError::Limit { limit: "maxStorageBufferBindingSize", .. }))
                     if slots.len() > 1 =>
@@ -115,13 +121,8 @@ impl Runtime {
         Ok(done)
     }
 
-    fn new(
-        gpu: &Gpu,
-        model: &Model,
-        shared: &Shared,
-        slots: Range<usize>,
-        keeps_last: bool,
-    ) -> Result<Self, Error> {
+    fn new(gpu: &Gpu, model: &Model, shared: &Shared, room: &Room) -> Result<Self, Error> {
+        let Room { slots, capacity, keeps_last } = room.clone();
         let rest = Instance::new(0, Wrap::Loop, 0.0, 1.0);
         let count = slots.len();
         let layer = |mask: &Option<Vec<f32>>| {
@@ -130,7 +131,15 @@ impl Runtime {
         };
         let layers: Vec<AnimationLayer> = shared.masks.iter().map(layer).collect();
         let crowd = Crowd::layered(gpu, &shared.set, &vec![rest; count], &layers)?;
-        let frame = GatedFrame::new(gpu, &shared.tiers.skeleton, &shared.clips, &crowd, &shared.gate)?;
+        // A chunk gets its part of a budget of bones.
+        let gate = match &shared.gate {
+            Gate::Budget { table, bones } if count < capacity => {
+                let bones = u64::from(*bones) * count as u64 / capacity as u64;
+                Cow::Owned(Gate::Budget { table: table.clone(), bones: bones as u32 })
+            }
+            gate => Cow::Borrowed(gate),
+        };
+        let frame = GatedFrame::new(gpu, &shared.tiers.skeleton, &shared.clips, &crowd, &gate)?;
         let every: Vec<usize> = (0..model.clips.len()).collect();
         let (mut skins, mut pagings, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for (mesh, (buffers, clusters)) in model.meshes.iter().zip(&shared.meshes) {

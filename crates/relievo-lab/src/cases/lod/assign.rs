@@ -85,6 +85,7 @@ fn params(first: u32, instances: u32, has_stray: bool) -> AssignParams {
         fade_start: 5.0,
         fade_rate: if has_stray { 0.0 } else { 0.0625 },
         full_weight_allowed: 0.01,
+        tier_fraction: 0.25,
         tier_errors: [0.0, 1e-3, 0.03, if has_stray { 0.5 } else { f32::MAX }].into(),
     }
 }
