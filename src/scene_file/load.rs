@@ -8,13 +8,13 @@ use std::sync::Arc;
 use image::{DynamicImage, Rgba, RgbaImage};
 
 use super::builtin::BuiltIns;
-use super::entries::{EntryKind, ObjectEntry, PlayEntry, ReliefEntry, Source};
+use super::entries::{EntryKind, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Source};
 use super::spec::SceneFile;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::Error;
-use crate::asset::{Mesh, Model};
+use crate::asset::{Clip, Mesh, Model};
 use crate::scene::Relief;
-use crate::skinning::{add_levels, add_levels_and_at_rest, at_rest, poses_of};
+use crate::skinning::{Examined, add_levels, add_levels_and_at_rest, at_rest, join_levels_in, poses_of};
 use crate::surface::{Green, HeightMap, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceVertex};
 use crate::terrain::config::ZoneTexture;
 use crate::terrain::texture::TerrainTexture;
@@ -72,7 +72,8 @@ impl SceneFile {
     /// `read` gets paths relative to the scene file. Names with the prefix `builtin:` come from `built_ins`;
     /// [`NoBuiltIns`](super::NoBuiltIns) has none. Levels are computed for all meshes and characters. For characters, they fit
     /// the clips that the characters play, at 15 poses a second and at most 48 poses per clip. A model that several objects show
-    /// is read and simplified only once, for the clips of all these objects.
+    /// is read and simplified only once, for the clips of all these objects. Levels that an artist made are joined instead
+    /// ([`join_levels`](crate::ops::skinning::join_levels)); their errors are measured in the same poses.
     ///
     /// # Errors
     /// [`InputError`] with the path of the name in the scene file, in these cases: a file cannot be read or understood; a file
@@ -101,9 +102,10 @@ impl SceneFile {
 struct Files<'a> {
     read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
     built_ins: &'a dyn BuiltIns,
-    models: HashMap<Source, Arc<Model>>,
-    needs: HashMap<Source, Needs>,
-    levelled: HashMap<Source, Levelled>,
+    /// The levels of detail that each source has, the finest first; at least one.
+    models: HashMap<Source, Vec<Arc<Model>>>,
+    needs: HashMap<ModelSource, Needs>,
+    levelled: HashMap<ModelSource, Levelled>,
 }
 
 /// A model with levels of detail, shared by all objects that show the model.
@@ -136,21 +138,23 @@ impl<'a> Files<'a> {
 
     /// Reads an object's model, and records the object's use of it.
     fn add_needs(&mut self, entry: &ObjectEntry) -> Result<(), InputError> {
-        let path = format!("{}.file", entry.path);
-        let model = self.model(&path, &entry.source)?;
-        if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
-            let bound = "must have a mesh with triangles";
-            return Err(InputError::new(path, &entry.source, bound));
+        let models = self.models(entry)?;
+        let is_empty = |model: &Arc<Model>| model.meshes.iter().all(|mesh| mesh.indices.is_empty());
+        let refused = |level: usize, bound: &str| {
+            InputError::new(entry.source.path(&entry.path, level), entry.source.name(level), bound)
+        };
+        if let Some(level) = models.iter().position(is_empty) {
+            return Err(refused(level, "must have a mesh with triangles"));
         }
+        let model = &models[0];
         match &entry.kind {
             EntryKind::Relief(_) => {}
             EntryKind::Mesh => self.needs.entry(entry.source.clone()).or_default().is_at_rest = true,
             EntryKind::Character(play) => {
                 if model.clips.is_empty() {
-                    let bound = "must have clips: list a model without among meshes";
-                    return Err(InputError::new(path, &entry.source, bound));
+                    return Err(refused(0, "must have clips: list a model without among meshes"));
                 }
-                let clips = played(entry, play, &model)?;
+                let clips = played(entry, play, model)?;
                 self.needs.entry(entry.source.clone()).or_default().clips.extend(clips);
             }
         }
@@ -158,37 +162,50 @@ impl<'a> Files<'a> {
     }
 
     fn object(&mut self, entry: &ObjectEntry) -> Result<Loaded, InputError> {
-        let path = format!("{}.file", entry.path);
-        let within = |error: InputError| within(&path, &entry.source, &error);
+        let within = |error: InputError| in_levels(entry, &error);
         match &entry.kind {
             EntryKind::Relief(relief) => {
-                let model = self.model(&path, &entry.source)?;
-                let rest = at_rest(&model).map_err(within)?;
+                let rest = at_rest(&self.models(entry)?[0]).map_err(within)?;
                 Ok(Loaded::Relief(Box::new(self.relief(entry, relief, &rest)?)))
             }
             EntryKind::Mesh | EntryKind::Character(_) => {
-                let Levelled { model, resting } = self.levelled(&path, &entry.source).map_err(within)?;
+                let Levelled { model, resting } = self.levelled(entry).map_err(within)?;
                 let resting = resting.filter(|_| entry.kind == EntryKind::Mesh);
                 Ok(Loaded::Model(resting.unwrap_or(model)))
             }
         }
     }
 
-    fn model(&mut self, path: &str, source: &Source) -> Result<Arc<Model>, InputError> {
+    /// The levels of detail that the source of an entry has, the finest first; at least one.
+    fn models(&mut self, entry: &ObjectEntry) -> Result<Vec<Arc<Model>>, InputError> {
+        let levels = match &entry.source {
+            ModelSource::One(one) => return self.models_of(&entry.source.path(&entry.path, 0), one),
+            ModelSource::Levels(levels) => levels,
+        };
+        let finest = |(at, source): (usize, &Source)| {
+            let own = self.models_of(&entry.source.path(&entry.path, at), source)?;
+            Ok(own[0].clone())
+        };
+        levels.iter().enumerate().map(finest).collect()
+    }
+
+    /// The levels of detail in a file. `path` is the path of the file's name in the scene file.
+    fn models_of(&mut self, path: &str, source: &Source) -> Result<Vec<Arc<Model>>, InputError> {
         if let Some(known) = self.models.get(source) {
             return Ok(known.clone());
         }
-        let model = match source {
-            Source::BuiltIn(name) => self.built_ins.model(name),
+        let models = match source {
+            Source::BuiltIn(name) => self.built_ins.model(name).map(|model| vec![model]),
             Source::File(file) => {
                 let bytes = self.bytes(path, file)?;
                 let folder = file.parent().unwrap_or(Path::new(""));
-                Model::from_bytes_beside(file, &bytes, &|name| (self.read)(&folder.join(name)))
+                Model::levels_from_bytes_beside(file, &bytes, &|name| (self.read)(&folder.join(name)))
             }
         };
-        let model = Arc::new(model.map_err(|error| within(path, source, &error))?);
-        self.models.insert(source.clone(), model.clone());
-        Ok(model)
+        let models = models.map_err(|error| within(path, source, &error))?;
+        let models: Vec<_> = models.into_iter().map(Arc::new).collect();
+        self.models.insert(source.clone(), models.clone());
+        Ok(models)
     }
 
     fn bytes(&self, path: &str, file: &Path) -> Result<Vec<u8>, InputError> {
@@ -196,27 +213,23 @@ impl<'a> Files<'a> {
             .map_err(|error| InputError::new(path, file.display(), format!("cannot be read: {error}")))
     }
 
-    fn levelled(&mut self, path: &str, source: &Source) -> Result<Levelled, InputError> {
+    fn levelled(&mut self, entry: &ObjectEntry) -> Result<Levelled, InputError> {
+        let source = &entry.source;
         if let Some(known) = self.levelled.get(source) {
             return Ok(known.clone());
         }
-        let mut own = Model::clone(&*self.model(path, source)?);
+        let models = self.models(entry)?;
         let Needs { clips, is_at_rest } = self.needs.remove(source).unwrap_or_default();
         let clips: Vec<usize> = clips.into_iter().collect();
-        let poses = clips.iter().map(|clip| poses_of(&own.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
-        let poses = poses.into_iter().map(|poses| (poses / SPARSER).clamp(LEAST_POSES, MOST_POSES)).max();
-        let poses = poses.unwrap_or(1);
+        let own = levelled(&models, &clips, is_at_rest)?;
         let mut resting = None;
         if is_at_rest {
-            add_levels_and_at_rest(&mut own, &clips, poses)?;
             let mut rest = at_rest(&own)?;
             for (mesh, from) in rest.meshes.iter_mut().zip(&own.meshes) {
                 mesh.levels.clone_from(&from.levels);
                 mesh.partners.clone_from(&from.partners);
             }
             resting = Some(Arc::new(rest));
-        } else {
-            add_levels(&mut own, &clips, poses)?;
         }
         let own = Levelled { model: Arc::new(own), resting };
         self.levelled.insert(source.clone(), own.clone());
@@ -288,6 +301,41 @@ impl<'a> Files<'a> {
         crate::surface::map::decode(Cursor::new(bytes)).map_err(|error| {
             InputError::new(path, file.display(), format!("must be a whole PNG or JPEG: {error}"))
         })
+    }
+}
+
+/// One model of the levels of detail that an artist made, or the only model with levels. The errors of levels fit the clips
+/// and, if an object shows it, the rest pose.
+fn levelled(models: &[Arc<Model>], clips: &[usize], is_at_rest: bool) -> Result<Model, InputError> {
+    let sparse = |clip: &Clip| Ok((poses_of(clip)? / SPARSER).clamp(LEAST_POSES, MOST_POSES));
+    if models.len() > 1 {
+        let models: Vec<Model> = models.iter().map(|model| Model::clone(model)).collect();
+        return join_levels_in(&models, &Examined { clips, poses: sparse, is_at_rest });
+    }
+    let mut own = Model::clone(&models[0]);
+    let poses = clips.iter().map(|clip| sparse(&own.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
+    let poses = poses.into_iter().max().unwrap_or(1);
+    match is_at_rest {
+        true => add_levels_and_at_rest(&mut own, clips, poses)?,
+        false => add_levels(&mut own, clips, poses)?,
+    };
+    Ok(own)
+}
+
+/// Reports a mistake in the levels of an entry. If the path of the error begins with a model (`models[1].skins[0]`), the
+/// reported path leads to the name of this model in the scene file.
+fn in_levels(entry: &ObjectEntry, error: &InputError) -> InputError {
+    let of_model = error.path.strip_prefix("models[").and_then(|rest| rest.split_once("]."));
+    let level = of_model.and_then(|(level, path)| Some((level.parse().ok()?, path)));
+    match (level, &entry.source) {
+        (Some((level, path)), ModelSource::Levels(_)) => {
+            let inner = InputError { path: path.to_owned(), ..error.clone() };
+            within(&entry.source.path(&entry.path, level), entry.source.name(level), &inner)
+        }
+        (None, ModelSource::Levels(_)) => {
+            InputError::new(format!("{}.levels", entry.path), &entry.source, error.to_string())
+        }
+        (_, ModelSource::One(one)) => within(&entry.source.path(&entry.path, 0), one, error),
     }
 }
 
