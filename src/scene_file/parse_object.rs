@@ -5,7 +5,8 @@ use std::path::Path;
 use glam::{DVec3, Quat, Vec3};
 
 use super::entries::{
-    BUILT_IN, EntryKind, InstanceEntry, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source, Spot,
+    BUILT_IN, EntryKind, InstanceEntry, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source,
+    Spot,
 };
 use super::json::{At, COORDINATE, Fields};
 use super::parse_lod::{level_of_detail, transition};
@@ -36,7 +37,9 @@ const SHADOWS: [(&str, ReliefShadow); 3] =
 pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
     let fields = at.fields(&["file", "levels", "material", "transition", "lod", "instances", "scatter"])?;
     let source = model(&fields)?;
-    if let (ModelSource::Levels(_), Some(levels), Some(_)) = (&source, fields.get("levels"), fields.get("material")) {
+    if let (ModelSource::Levels(_), Some(levels), Some(_)) =
+        (&source, fields.get("levels"), fields.get("material"))
+    {
         return Err(levels.error("must not be given beside material: a relief has one level of detail"));
     }
     let kind = fields.maybe("material", |at| relief(&at))?.map_or(EntryKind::Mesh, EntryKind::Relief);
@@ -47,8 +50,7 @@ pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
 pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
     const FIELDS: [&str; 10] =
         ["file", "levels", "clip", "rate", "start", "wrap", "transition", "lod", "instances", "scatter"];
-    let fields =
-        at.fields(&FIELDS)?;
+    let fields = at.fields(&FIELDS)?;
     let source = model(&fields)?;
     let all = PlayEntry { clip: None, rate: 1.0, start: 0.0, wrap: Wrap::Loop };
     let kind = EntryKind::Character(play(&fields, &all)?);
@@ -87,7 +89,8 @@ fn placed(
 fn model(fields: &Fields<'_>) -> Result<ModelSource, InputError> {
     let one = |at: &At<'_>| source(at, &ENDINGS, "must be a .glb, .gltf or .obj file");
     let Some(levels) = fields.get("levels") else {
-        let at = fields.need("file", "a .glb, .gltf or .obj file, a built-in model, or levels in its place")?;
+        let at =
+            fields.need("file", "a .glb, .gltf or .obj file, a built-in model, or levels in its place")?;
         return Ok(ModelSource::One(one(&at)?));
     };
     if fields.get("file").is_some() {

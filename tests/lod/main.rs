@@ -2,6 +2,8 @@
 
 mod budgets;
 mod criteria;
+mod foreign;
+mod joined;
 mod linear;
 mod promise;
 mod stage;

@@ -61,7 +61,9 @@ impl Lods {
                     _ if given[*id].is_some() => "must be a node without levels".to_owned(),
                     (_, Some(other)) => format!("must be listed once, and nodes[{other}] lists it"),
                     (Some(parent), _) => format!("must be no child, and nodes[{parent}] is its parent"),
-                    _ if in_scene[*id] => format!("must not be in the scene, where it takes the place of nodes[{node}]"),
+                    _ if in_scene[*id] => {
+                        format!("must not be in the scene, where it takes the place of nodes[{node}]")
+                    }
                     _ => {
                         listed[*id] = Some(node);
                         continue;

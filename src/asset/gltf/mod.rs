@@ -64,7 +64,7 @@
 //! | `EXT_texture_webp` | if there is no PNG or JPEG beside it |
 //! | `KHR_materials_pbrSpecularGlossiness` | the diffuse colour is the base colour |
 //! | `KHR_animation_pointer` | pointers at translation, rotation, scale and weights of nodes |
-//! | `MSFT_lod` on nodes | [`Model::levels_from_file`](crate::asset::Model::levels_from_file) reads all levels; otherwise, the finest is read |
+//! | `MSFT_lod` on nodes | [`Model::levels_from_file`](crate::asset::Model::levels_from_file) reads all levels, other functions the finest |
 //!
 //! | refused | where |
 //! |---|---|

@@ -1,5 +1,8 @@
-//! The distances of joined levels from level 0, in both directions, in many poses. Most samples are skipped in most poses:
-//! a triangle that was near in the first pose is near enough.
+//! The distances of joined levels from level 0, in both directions, in many poses.
+//!
+//! Most triangles are skipped in most poses. The distance from a triangle is a convex function, which is largest at a corner of
+//! another triangle. So a triangle whose corners are near a single triangle of the other surface is near it as a whole. Of the
+//! remaining triangles, most samples are skipped, because the triangle that was nearest in the first pose is near enough.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -14,8 +17,11 @@ pub(super) type Level = Vec<usize>;
 /// Number of moments that are examined in parallel, from the same known distances.
 const BATCH: usize = 64;
 
-/// Smallest and largest number of steps along an edge of a level's triangle, between two samples.
-const STEPS: [f64; 2] = [2.0, 8.0];
+/// Smallest and largest number of steps from sample to sample along the edges of a triangle.
+const STEPS: [f64; 2] = [2.0, 16.0];
+
+/// Number of steps along an edge of mean length of level 0: in level 0, and in the other levels.
+const DENSITY: [f64; 2] = [4.0, 2.0];
 
 /// The distance of each level but the first from the first: the largest of all moments. All meshes have their own triangles
 /// as level 0. Each level has at least one triangle.
@@ -47,7 +53,8 @@ struct Vertices {
 
 impl Vertices {
     fn new(model: &Model) -> Self {
-        let own: Vec<Vec<u32>> = model.meshes.iter().map(|mesh| (0..mesh.vertices() as u32).collect()).collect();
+        let own: Vec<Vec<u32>> =
+            model.meshes.iter().map(|mesh| (0..mesh.vertices() as u32).collect()).collect();
         let mut next = 0;
         let start = |own: &Vec<u32>| {
             next += own.len() as u32;
@@ -68,28 +75,69 @@ impl Vertices {
     fn triangles(&self, model: &Model, meshes: &[usize]) -> Vec<[u32; 3]> {
         let of_mesh = |mesh: &usize| {
             let start = self.starts[*mesh];
-            model.meshes[*mesh].indices.as_chunks::<3>().0.iter().map(move |corners| corners.map(|at| start + at))
+            model.meshes[*mesh]
+                .indices
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .map(move |corners| corners.map(|at| start + at))
         };
         meshes.iter().flat_map(of_mesh).collect()
     }
 }
 
-/// A point in a triangle.
-struct Sample {
-    corners: [u32; 3],
-    /// Barycentric coordinates.
-    parts: [f64; 3],
-    /// A triangle of the other surface that was near in the first pose, as its index in the tree.
-    hint: u32,
+/// Samples of all triangles of a surface.
+struct Side {
+    patches: Vec<Patch>,
+    /// For each sample, the triangle of the other surface that was nearest in the first pose, as its index in the tree.
+    hints: Vec<u32>,
 }
 
-impl Sample {
-    fn new(corners: [u32; 3], parts: [f64; 3]) -> Self {
-        Self { corners, parts, hint: 0 }
+/// A triangle of a surface.
+struct Patch {
+    corners: [u32; 3],
+    /// Steps along each edge from sample to sample.
+    steps: u32,
+    /// The triangle of the other surface that was nearest to the midpoint in the first pose.
+    hint: u32,
+    /// Index of the hint of the first sample.
+    first: u32,
+}
+
+impl Side {
+    /// Samples of triangles, about `spacing` apart in the first pose. `other` is the other surface in this pose.
+    fn new(triangles: &[[u32; 3]], spacing: f64, other: &Posed<'_>) -> Self {
+        let mut side = Self { patches: Vec::with_capacity(triangles.len()), hints: Vec::new() };
+        for corners in triangles {
+            let points = corners.map(|corner| other.points()[corner as usize]);
+            let longest = edges(points).into_iter().fold(0.0, f64::max);
+            // The quotient is not a number if level 0 has no extent.
+            let steps = (longest / spacing).ceil().max(STEPS[0]).min(STEPS[1]) as u32;
+            let first = side.hints.len() as u32;
+            side.hints.extend(samples(steps).map(|parts| other.nearest(blend(points, parts))));
+            // The midpoint is the last sample.
+            let hint = side.hints[side.hints.len() - 1];
+            side.patches.push(Patch { corners: *corners, steps, hint, first });
+        }
+        side
     }
 
-    fn position(&self, points: &[DVec3]) -> DVec3 {
-        self.corners.iter().zip(self.parts).map(|(corner, part)| part * points[*corner as usize]).sum()
+    /// The largest squared distance of a sample from the other surface; at least `known`.
+    fn largest(&self, other: &Posed<'_>, mut known: f64) -> f64 {
+        for Patch { corners, steps, hint, first } in &self.patches {
+            let points = corners.map(|corner| other.points()[corner as usize]);
+            if points.into_iter().all(|point| other.squared_to(*hint, point) <= known) {
+                continue;
+            }
+            for (parts, hint) in samples(*steps).zip(&self.hints[*first as usize..]) {
+                let point = blend(points, parts);
+                let squared = other.squared_to(*hint, point);
+                if squared > known {
+                    known = other.beyond(point, squared, known).unwrap_or(known);
+                }
+            }
+        }
+        known
     }
 }
 
@@ -102,33 +150,26 @@ struct Pairs {
 struct Coarse {
     tree: Tree,
     /// Samples of level 0.
-    forth: Vec<Sample>,
+    forth: Side,
     /// Samples of the level.
-    back: Vec<Sample>,
+    back: Side,
 }
 
 impl Pairs {
     /// `levels` has the triangles of each level, and `first` the positions of the vertices in the first pose.
     fn new(levels: &[Vec<[u32; 3]>], first: &[DVec3]) -> Self {
-        let length = |[a, b]: [u32; 2]| first[a as usize].distance(first[b as usize]);
-        let edge = levels[0].iter().flat_map(|corners| edges(*corners)).map(length).sum::<f64>()
-            / (3 * levels[0].len()) as f64;
+        let points = |corners: &[u32; 3]| corners.map(|corner| first[corner as usize]);
+        let all = levels[0].iter().flat_map(|corners| edges(points(corners))).sum::<f64>();
+        let edge = all / (3 * levels[0].len()) as f64;
         let fine = Tree::new(levels[0].clone(), first);
         let near_fine = fine.posed(first);
-        let coarse = levels[1..].par_iter().map(|level| {
+        let coarse = |level: &Vec<[u32; 3]>| {
             let tree = Tree::new(level.clone(), first);
-            let back = level.iter().flat_map(|corners| {
-                let longest = edges(*corners).map(length).into_iter().fold(0.0, f64::max);
-                // The quotient is not a number if level 0 has no extent.
-                lattice(*corners, (longest / edge).ceil().max(STEPS[0]).min(STEPS[1]) as u32)
-            });
-            let (forth, back) = {
-                let near = tree.posed(first);
-                (hinted(samples(&levels[0]), &near, first), hinted(back, &near_fine, first))
-            };
+            let forth = Side::new(&levels[0], edge / DENSITY[0], &tree.posed(first));
+            let back = Side::new(level, edge / DENSITY[1], &near_fine);
             Coarse { tree, forth, back }
-        });
-        let coarse = coarse.collect();
+        };
+        let coarse = levels[1..].par_iter().map(coarse).collect();
         Self { fine, coarse }
     }
 
@@ -136,52 +177,25 @@ impl Pairs {
     fn larger(&self, points: &[DVec3], known: &[f64]) -> Vec<f64> {
         let fine = self.fine.posed(points);
         let of_level = |(Coarse { tree, forth, back }, known): (&Coarse, &f64)| {
-            let coarse = tree.posed(points);
-            largest(back, &fine, largest(forth, &coarse, *known))
+            back.largest(&fine, forth.largest(&tree.posed(points), *known))
         };
         self.coarse.iter().zip(known).map(of_level).collect()
     }
 }
 
-/// The largest squared distance of samples from a surface; at least `known`.
-fn largest(samples: &[Sample], surface: &Posed<'_>, mut known: f64) -> f64 {
-    for sample in samples {
-        let point = sample.position(surface.points());
-        let squared = surface.squared_to(sample.hint, point);
-        if squared > known {
-            known = surface.beyond(point, squared, known).unwrap_or(known);
-        }
-    }
-    known
+/// The lengths of a triangle's edges.
+fn edges([a, b, c]: [DVec3; 3]) -> [f64; 3] {
+    [a.distance(b), b.distance(c), c.distance(a)]
 }
 
-fn hinted(samples: impl Iterator<Item = Sample>, other: &Posed<'_>, first: &[DVec3]) -> Vec<Sample> {
-    samples.map(|sample| Sample { hint: other.nearest(sample.position(first)), ..sample }).collect()
+/// Barycentric coordinates of samples: a lattice with `steps` steps along each edge, then the midpoint.
+fn samples(steps: u32) -> impl Iterator<Item = [f64; 3]> {
+    let part = move |part: u32| f64::from(part) / f64::from(steps);
+    let lattice =
+        (0..=steps).flat_map(move |a| (0..=steps - a).map(move |b| [a, b, steps - a - b].map(part)));
+    lattice.chain([[1.0 / 3.0; 3]])
 }
 
-fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
-}
-
-/// The vertices, and the midpoints of edges and triangles, each once.
-fn samples(triangles: &[[u32; 3]]) -> impl Iterator<Item = Sample> {
-    let once = |mut all: Vec<[u32; 3]>| {
-        all.sort_unstable();
-        all.dedup();
-        all.into_iter()
-    };
-    let vertices = once(triangles.as_flattened().iter().map(|vertex| [*vertex; 3]).collect());
-    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b), a.min(b)];
-    let edges = once(triangles.iter().flat_map(|corners| edges(*corners).map(sorted)).collect());
-    let vertices = vertices.map(|corners| Sample::new(corners, [1.0, 0.0, 0.0]));
-    let edges = edges.map(|corners| Sample::new(corners, [0.5, 0.5, 0.0]));
-    let middles = triangles.iter().map(|corners| Sample::new(*corners, [1.0 / 3.0; 3]));
-    vertices.chain(edges).chain(middles.collect::<Vec<_>>())
-}
-
-/// The midpoint of a triangle, and points in it with `steps` steps along each edge.
-fn lattice(corners: [u32; 3], steps: u32) -> impl Iterator<Item = Sample> {
-    let points = (0..=steps).flat_map(move |a| (0..=steps - a).map(move |b| [a, b, steps - a - b]));
-    let sample = move |parts: [u32; 3]| Sample::new(corners, parts.map(|part| f64::from(part) / f64::from(steps)));
-    points.map(sample).chain([Sample::new(corners, [1.0 / 3.0; 3])])
+fn blend(points: [DVec3; 3], parts: [f64; 3]) -> DVec3 {
+    points.into_iter().zip(parts).map(|(point, part)| part * point).sum()
 }

@@ -39,7 +39,8 @@ impl Tree {
     /// Builds the tree of at least one triangle. Each node is divided at the median along the longest side of its box.
     /// `points` are the positions of the vertices.
     pub fn new(mut triangles: Vec<[u32; 3]>, points: &[DVec3]) -> Self {
-        let middle = |triangle: &[u32; 3]| triangle.map(|vertex| points[vertex as usize]).into_iter().sum::<DVec3>();
+        let middle =
+            |triangle: &[u32; 3]| triangle.map(|vertex| points[vertex as usize]).into_iter().sum::<DVec3>();
         let mut nodes: Vec<Node> = Vec::with_capacity(triangles.len());
         // Ranges of triangles whose nodes are missing, each with the parent of which it is the second child.
         let mut waiting = vec![(0..triangles.len(), None)];
@@ -58,7 +59,9 @@ impl Tree {
             let [low, high] = around(own, points);
             let axis = (high - low).max_position();
             let half = own.len() / 2;
-            own.select_nth_unstable_by(half, |a, b| middle(a)[axis].total_cmp(&middle(b)[axis]).then(a.cmp(b)));
+            own.select_nth_unstable_by(half, |a, b| {
+                middle(a)[axis].total_cmp(&middle(b)[axis]).then(a.cmp(b))
+            });
             waiting.push((range.start + half..range.end, Some(at as usize)));
             waiting.push((range.start..range.start + half, None));
         }
@@ -84,7 +87,8 @@ impl Tree {
 /// The box around triangles.
 fn around(triangles: &[[u32; 3]], points: &[DVec3]) -> Corners {
     let corners = triangles.as_flattened().iter().map(|vertex| points[*vertex as usize]);
-    corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], point| [low.min(point), high.max(point)])
+    corners
+        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], point| [low.min(point), high.max(point)])
 }
 
 impl Posed<'_> {

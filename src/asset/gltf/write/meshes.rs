@@ -31,7 +31,8 @@ pub(super) fn groups(model: &Model) -> Vec<Group> {
             mesh.name.rsplit_once('_').and_then(|(name, number)| Some((name, number.parse::<usize>().ok()?)));
         if let (Some(group), Some((name, number))) = (groups.last_mut(), parts) {
             let first = &model.meshes[group.meshes.start];
-            let is_next = number == group.meshes.len() && group.meshes.end == at && number > 0 && name == group.name;
+            let is_next =
+                number == group.meshes.len() && group.meshes.end == at && number > 0 && name == group.name;
             let is_alike = (first.skin, &first.weights) == (mesh.skin, &mesh.weights)
                 && first.weight_keys == mesh.weight_keys
                 && group.is_skinned == is_skinned;

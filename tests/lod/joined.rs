@@ -1,0 +1,1 @@
+//! Objects whose levels of detail another program made.
