@@ -7,7 +7,7 @@ use crate::asset::gltf::Beside;
 use crate::{Error, InputError};
 
 /// Extensions of the file formats that can be imported, in lower case.
-pub const ENDINGS: [&str; 3] = ["glb", "gltf", "obj"];
+pub(crate) const ENDINGS: [&str; 3] = ["glb", "gltf", "obj"];
 
 impl Model {
     /// Reads a `.gltf`, `.glb` or `.obj` file, with the buffers, material libraries and images that lie beside it.

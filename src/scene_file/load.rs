@@ -399,6 +399,145 @@ mod tests {
     use crate::samples::Samples;
     use crate::scene_file::NoBuiltIns;
 
+    fn scene(entry: &str) -> Result<SceneFile, InputError> {
+        SceneFile::from_json(&format!(r#"{{{entry}, "camera": {{"at": [0, 2, 9], "look": [0, 1, 0]}}}}"#))
+    }
+
+    /// The error of an entry with an instance, from files that are read by `read`.
+    fn refused(list: &str, fields: &str, read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>) -> InputError {
+        let entry = format!(r#""{list}": [{{{fields}, "instances": [{{"at": [0, 0, 0]}}]}}]"#);
+        let loaded = scene(&entry).and_then(|file| file.load(read, &Samples).map(|_| ()));
+        loaded.expect_err(fields)
+    }
+
+    /// Files by name: the rock and the creature as binary glTF.
+    fn files(name: &Path) -> std::io::Result<Vec<u8>> {
+        let model = match name.to_str() {
+            Some("rock.glb") => crate::samples::rock(),
+            Some("creature.glb") => crate::samples::creature(),
+            _ => return Err(std::io::ErrorKind::NotFound.into()),
+        };
+        model.and_then(|model| model.to_glb()).map_err(std::io::Error::other)
+    }
+
+    /// Levels that an artist made: their names are listed, and an object has a level for each.
+    #[test]
+    fn levels_have_a_model_each() {
+        let file = scene(
+            r#""meshes": [
+                {"levels": ["rock.glb", "builtin:wall", "builtin:rock"], "instances": [{"at": [0, 0, 0]}]},
+                {"file": "builtin:rock", "instances": [{"at": [3, 0, 0]}]},
+                {"levels": ["creature.glb", "builtin:creature"], "instances": [{"at": [6, 0, 0]}]}
+            ],
+            "characters": [
+                {"levels": ["creature.glb", "builtin:creature"], "instances": [{"at": [9, 0, 0]}]}
+            ]"#,
+        );
+        let file = file.expect("a scene");
+        assert_eq!(file.files(), [Path::new("creature.glb"), Path::new("rock.glb")]);
+        let loaded = file.load(&files, &Samples).expect("loaded");
+        let models = loaded.objects.iter().map(|object| match object {
+            Loaded::Model(model) => model.clone(),
+            Loaded::Relief(_) => unreachable!("there is none"),
+        });
+        let models: Vec<Arc<Model>> = models.collect();
+        let errors =
+            |model: &Model| model.meshes[0].levels.iter().map(|level| level.error).collect::<Vec<_>>();
+        let shown = |model: &Model| {
+            let at =
+                |level: u32| model.meshes.iter().map(|mesh| mesh.triangles(level).len()).sum::<usize>() / 3;
+            (0..=model.meshes[0].levels.len() as u32).map(at).collect::<Vec<_>>()
+        };
+        let [rock, wall, creature] = ["rock", "wall", "creature"].map(|name| {
+            let model = Samples.model(name).expect("a built-in model");
+            model.meshes.iter().map(|mesh| mesh.indices.len() / 3).sum::<usize>()
+        });
+        assert_eq!(shown(&models[0]), [rock, wall, rock]);
+        let found = errors(&models[0]);
+        // The third level is the rock again, so it takes the place of the wall.
+        assert!(found[0] > 0.1 && found[1] == found[0].next_up(), "{found:?}");
+        assert_eq!(file.objects[0].source.to_string(), "rock.glb, builtin:wall, builtin:rock");
+        // The same model as a mesh, at rest, and as a character.
+        assert!(models[2].clips.is_empty() && !models[3].clips.is_empty());
+        assert_eq!(errors(&models[2]), errors(&models[3]));
+        assert_eq!((shown(&models[2]), shown(&models[3])), (vec![creature; 2], vec![creature; 2]));
+    }
+
+    #[test]
+    fn mistakes_in_levels_are_refused_with_their_place() {
+        let none = |_: &Path| Err(std::io::ErrorKind::NotFound.into());
+        let refused_with = |list: &str, fields: &str, path: &str, words: &str| {
+            let found = refused(list, fields, &files);
+            assert!(found.path == path && found.to_string().contains(words), "{found}");
+        };
+        let meshes = |fields: &str, path: &str, words: &str| refused_with("meshes", fields, path, words);
+        let characters =
+            |fields: &str, path: &str, words: &str| refused_with("characters", fields, path, words);
+        meshes(r#""clip": 0"#, "meshes[0].clip", "levels");
+        meshes(r#""transition": "hard""#, "meshes[0].file", "levels in its place");
+        meshes(r#""levels": "rock.glb""#, "meshes[0].levels", "must be a list");
+        meshes(r#""levels": ["rock.glb"]"#, "meshes[0].levels.len", "2..=8");
+        let nine = format!(r#""levels": [{}]"#, vec![r#""rock.glb""#; 9].join(", "));
+        meshes(&nine, "meshes[0].levels.len", "2..=8");
+        meshes(r#""levels": ["rock.glb", 3]"#, "meshes[0].levels[1]", "= 3");
+        meshes(r#""levels": ["rock.glb", "rock.png"]"#, "meshes[0].levels[1]", ".glb, .gltf or .obj");
+        meshes(r#""levels": ["rock.glb", "gone.glb"]"#, "meshes[0].levels[1]", "cannot be read");
+        meshes(r#""levels": ["rock.glb", "builtin:cow"]"#, "meshes[0].levels[1]", "creature, rock, wall");
+        let both = r#""file": "rock.glb", "levels": ["rock.glb", "rock.glb"]"#;
+        meshes(both, "meshes[0].levels", "must not be given beside file");
+        let relief = r#""levels": ["rock.glb", "rock.glb"], "material": {"relief": "builtin:bricks"}"#;
+        meshes(relief, "meshes[0].levels", "must not be given beside material");
+        let moving = r#""levels": ["rock.glb", "creature.glb"]"#;
+        meshes(moving, "meshes[0].levels[1]", "clips.len = ");
+        characters(r#""levels": ["creature.glb", "rock.glb"]"#, "characters[0].levels[1]", "skinned = 0");
+        characters(r#""levels": ["rock.glb", "rock.glb"]"#, "characters[0].levels[0]", "must have clips");
+        let found = refused("meshes", r#""levels": ["rock.glb", "rock.glb"]"#, &none);
+        assert_eq!((&*found.path, &*found.value), ("meshes[0].levels[0]", "rock.glb"));
+    }
+
+    /// A file whose nodes have levels (`MSFT_lod`) is shown with these.
+    #[test]
+    fn files_have_levels_of_their_own() {
+        let document = |ids: &str| {
+            let mut near = crate::samples::rock().expect("valid");
+            let mut far = Samples.model("wall").expect("valid").meshes.remove(0);
+            (far.skin, far.material) = (near.meshes[0].skin, near.meshes[0].material);
+            (near.meshes[0].name, far.name) = ("near_0".to_owned(), "far_0".to_owned());
+            near.meshes.push(far);
+            let glb = near.to_glb().expect("written");
+            let length = u32::from_le_bytes(glb[12..16].try_into().expect("four bytes")) as usize;
+            let mut json: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).expect("JSON");
+            let nodes = json["nodes"].as_array_mut().expect("a list");
+            let at = |name: &str| nodes.iter().position(|node| node["name"] == name).expect("a node");
+            let (near, far) = (at("near"), at("far"));
+            nodes
+                .iter_mut()
+                .filter_map(|node| node["children"].as_array_mut())
+                .for_each(|all| all.retain(|node| *node != far));
+            let ids: serde_json::Value =
+                serde_json::from_str(&ids.replace("far", &far.to_string())).expect("JSON");
+            nodes[near]["extensions"] = serde_json::json!({ "MSFT_lod": { "ids": ids } });
+            let mut text = serde_json::to_vec(&json).expect("JSON");
+            text.resize(text.len().next_multiple_of(4), b' ');
+            let mut all = glb[..8].to_vec();
+            let rest = &glb[20 + length..];
+            all.extend(((20 + text.len() + rest.len()) as u32).to_le_bytes());
+            all.extend((text.len() as u32).to_le_bytes());
+            all.extend(&glb[16..20]);
+            all.extend(text);
+            all.extend(rest);
+            all
+        };
+        let file =
+            scene(r#""meshes": [{"file": "a.glb", "instances": [{"at": [0, 0, 0]}]}]"#).expect("a scene");
+        let loaded = file.load(&|_| Ok(document("[far]")), &Samples).expect("loaded");
+        let Loaded::Model(model) = &loaded.objects[0] else { unreachable!("a model") };
+        assert_eq!((model.meshes.len(), model.meshes[0].levels.len()), (2, 1));
+        let found = refused("meshes", r#""file": "a.glb""#, &|_| Ok(document("[far, 99]")));
+        assert_eq!((&*found.path, &*found.value), ("meshes[0].file", "a.glb"));
+        assert!(found.bound.contains("extensions.MSFT_lod.ids[1] = 99: must be below"), "{found}");
+    }
+
     /// A model shown by a mesh and by characters with different clips is simplified once, for all of them.
     #[test]
     fn a_model_that_is_named_again_is_simplified_once() {

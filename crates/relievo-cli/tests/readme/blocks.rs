@@ -15,7 +15,7 @@ use relievo::ops::terrain::window::Windows;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
     Camera, Criterion, DistanceTo, LevelChoice, LevelOfDetail, ObjectId, Pace, Placement, Quality, Scene,
-    TerrainSource, Transition, View,
+    TerrainSource, Transition, View, join_levels,
 };
 use relievo_samples::creature;
 
@@ -161,6 +161,16 @@ fn levels((mut scene, mut view): (Scene, View), mut renderer: Renderer, tree: Ob
     scene.set_level_of_detail(tree, &level_of_detail)?;
     renderer.prepare(&scene)?;                                            // a new transition has pipelines of its own
     view.set_quality(Quality { triangles: Some(500_000), ..Quality::pixels(1.0) })?;
+    // end
+    Ok(())
+}
+
+#[rustfmt::skip]
+fn levels_that_an_artist_made(scene: &mut Scene) -> Result<(), Error> {
+    // begin docs/levels.md
+    let near = Model::from_file("man.glb".as_ref())?;
+    let far = Model::from_file("man_far.glb".as_ref())?;
+    let man = scene.add_character(&join_levels(&[near, far])?, 100)?;
     // end
     Ok(())
 }
