@@ -477,7 +477,7 @@ mod tests {
         meshes(r#""transition": "hard""#, "meshes[0].file", "levels in its place");
         meshes(r#""levels": "rock.glb""#, "meshes[0].levels", "must be a list");
         meshes(r#""levels": ["rock.glb"]"#, "meshes[0].levels.len", "2..=8");
-        let nine = format!(r#""levels": [{}]"#, vec![r#""rock.glb""#; 9].join(", "));
+        let nine = format!(r#""levels": [{}]"#, [r#""rock.glb""#; 9].join(", "));
         meshes(&nine, "meshes[0].levels.len", "2..=8");
         meshes(r#""levels": ["rock.glb", 3]"#, "meshes[0].levels[1]", "= 3");
         meshes(r#""levels": ["rock.glb", "rock.png"]"#, "meshes[0].levels[1]", ".glb, .gltf or .obj");

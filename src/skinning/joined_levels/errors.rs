@@ -18,7 +18,7 @@ pub(super) type Level = Vec<usize>;
 const BATCH: usize = 64;
 
 /// Smallest and largest number of steps from sample to sample along the edges of a triangle.
-const STEPS: [f64; 2] = [2.0, 16.0];
+const STEPS: [u32; 2] = [2, 16];
 
 /// Number of steps along an edge of mean length of level 0: in level 0, and in the other levels.
 const DENSITY: [f64; 2] = [4.0, 2.0];
@@ -111,8 +111,9 @@ impl Side {
         for corners in triangles {
             let points = corners.map(|corner| other.points()[corner as usize]);
             let longest = edges(points).into_iter().fold(0.0, f64::max);
-            // The quotient is not a number if level 0 has no extent.
-            let steps = (longest / spacing).ceil().max(STEPS[0]).min(STEPS[1]) as u32;
+            // The quotient is not a number if level 0 has no extent. It then becomes 0.
+            let [least, most] = STEPS;
+            let steps = ((longest / spacing).ceil() as u32).clamp(least, most);
             let first = side.hints.len() as u32;
             side.hints.extend(samples(steps).map(|parts| other.nearest(blend(points, parts))));
             // The midpoint is the last sample.
