@@ -7,6 +7,7 @@ use crate::asset::gltf::Beside;
 use crate::{Error, InputError};
 
 /// Extensions of the file formats that can be imported, in lower case.
+#[cfg(feature = "gpu")]
 pub(crate) const ENDINGS: [&str; 3] = ["glb", "gltf", "obj"];
 
 impl Model {
