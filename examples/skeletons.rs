@@ -27,7 +27,10 @@ const STEPS: usize = 5;
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().unwrap_or_else(|| "skeletons.png".to_owned());
-    let model = arguments.next().map_or_else(creature, |file| Model::from_file(Path::new(&file)))?;
+    let model = match arguments.next() {
+        Some(file) => Model::from_file(Path::new(&file))?,
+        None => creature()?,
+    };
     let gpu = Gpu::headless(&Options::default())?;
     let options = CharacterOptions {
         gate: BoneGate::Off,

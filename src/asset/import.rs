@@ -7,7 +7,8 @@ use crate::asset::gltf::Beside;
 use crate::{Error, InputError};
 
 /// Extensions of the file formats that can be imported, in lower case.
-pub const ENDINGS: [&str; 3] = ["glb", "gltf", "obj"];
+#[cfg(feature = "gpu")]
+pub(crate) const ENDINGS: [&str; 3] = ["glb", "gltf", "obj"];
 
 impl Model {
     /// Reads a `.gltf`, `.glb` or `.obj` file, with the buffers, material libraries and images that lie beside it.
@@ -43,10 +44,36 @@ impl Model {
         }
     }
 
-    fn read(
+    /// Reads a file like [`Model::from_file`], with all levels of detail that an artist made: one model a level, the finest
+    /// first. Levels are nodes with the extension `MSFT_lod` ([`gltf`](super::gltf#levels-of-detail)). A file without the
+    /// extension has one level. [`join_levels`](crate::ops::skinning::join_levels) makes one model of the levels.
+    ///
+    /// # Errors
+    /// The errors of [`Model::from_file`], and [`Error::InputFile`] for nodes that cannot be levels
+    /// (`nodes[0].extensions.MSFT_lod.ids[1]`).
+    pub fn levels_from_file(path: &Path) -> Result<Vec<Self>, Error> {
+        Self::read(path, |bytes, beside| Self::levels_from_bytes_beside(path, bytes, beside))
+    }
+
+    /// Reads levels of detail like [`Model::levels_from_file`], from memory like [`Model::from_bytes_beside`].
+    ///
+    /// # Errors
+    /// [`InputError`] with the path inside the glTF file, or the line of the OBJ file.
+    pub fn levels_from_bytes_beside(
+        name: &Path,
+        bytes: &[u8],
+        beside: Beside<'_>,
+    ) -> Result<Vec<Self>, InputError> {
+        match is_obj(name) {
+            true => Ok(vec![Self::from_obj_beside(bytes, beside)?]),
+            false => Self::levels_from_gltf_beside(bytes, beside),
+        }
+    }
+
+    fn read<T>(
         path: &Path,
-        import: impl FnOnce(&[u8], Beside<'_>) -> Result<Self, InputError>,
-    ) -> Result<Self, Error> {
+        import: impl FnOnce(&[u8], Beside<'_>) -> Result<T, InputError>,
+    ) -> Result<T, Error> {
         let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         import(&bytes, &|name: &Path| std::fs::read(folder.join(name)))

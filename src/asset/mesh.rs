@@ -22,10 +22,10 @@ pub const COORDINATE_LIMIT: f32 = tangents::COORDINATE_LIMIT;
 /// other levels.
 pub const MAX_LEVELS: usize = crate::shared::skinning::instance_lod::MAX_LEVELS as usize;
 
-/// A coarser level of detail of a mesh. It uses a subset of the mesh's vertices.
+/// A coarser level of detail of a mesh. It uses some of the mesh's vertices.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshLevel {
-    /// Three vertex indices per triangle, into the mesh's vertices; at least one triangle.
+    /// Three vertex indices per triangle, into the mesh's vertices. A mesh without partners may have no triangle at a level.
     pub indices: Vec<u32>,
     /// Geometric error in the model's units, at least 0: the largest distance between the level's surface and the mesh's
     /// surface in any examined pose. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures this distance at sample
@@ -66,8 +66,9 @@ pub struct Mesh {
     pub weights: Vec<f32>,
     /// Animated morph weights: the index of each clip that has weight keys, and these keys.
     pub weight_keys: Vec<(usize, WeightKeys)>,
-    /// Coarser levels of detail, starting with level 1; there are fewer than [`MAX_LEVELS`]. Level 0 is the mesh itself. Each
-    /// level uses a subset of the previous level's vertices, and errors do not decrease from one level to the next.
+    /// Coarser levels of detail, starting with level 1; there are fewer than [`MAX_LEVELS`]. Level 0 is the mesh itself. Errors
+    /// do not decrease from one level to the next. In a mesh with partners, each level has a triangle, and uses a subset of the
+    /// previous level's vertices.
     pub levels: Vec<MeshLevel>,
     /// Partner of each vertex: the vertex that replaces it in the first level whose triangles no longer use it. The partner is
     /// normally a vertex of that level. If the level uses no vertex at the position to which a vertex collapses, the partner is
@@ -92,6 +93,16 @@ impl Mesh {
             0 => &self.indices,
             level => &self.levels[level - 1].indices,
         }
+    }
+
+    /// Triangles of all levels, level 0 first, as three vertex indices each.
+    pub(crate) fn all_triangles(&self) -> impl Iterator<Item = &[u32]> {
+        (0..=self.levels.len() as u32).map(|level| self.triangles(level))
+    }
+
+    /// Whether the mesh has triangles at some level, but not at level 0: another mesh of its model has them there.
+    pub(crate) fn is_of_coarse_levels(&self) -> bool {
+        self.indices.is_empty() && self.levels.iter().any(|level| !level.indices.is_empty())
     }
 
     /// For each vertex, the index of the coarsest level whose triangles use it; 0 for a vertex without triangles.

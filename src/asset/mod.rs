@@ -4,7 +4,7 @@ mod beside;
 pub mod clip;
 pub mod gltf;
 pub(crate) mod images;
-pub mod import;
+pub(crate) mod import;
 #[doc(hidden)]
 pub mod indices;
 pub mod influences;

@@ -76,7 +76,7 @@ pub use crate::lod::transition::{Pace, Transition};
 #[doc(inline)]
 pub use crate::skinning::bounding_sphere::BoundingSphere;
 #[doc(inline)]
-pub use crate::skinning::{MeshLevels, SkeletonTier, add_levels, add_levels_with_progress};
+pub use crate::skinning::{MeshLevels, SkeletonTier, add_levels, add_levels_with_progress, join_levels};
 #[doc(inline)]
 pub use crate::surface::{
     Address, Green, HeightMap, March, Mips, ReliefMaps, ReliefMaterial, ReliefMethod, ReliefOptions,

@@ -26,7 +26,7 @@ pub(super) struct TerrainEntry {
 pub(super) struct ObjectEntry {
     /// Path of the entry in the scene file, such as `meshes[0]`.
     pub path: String,
-    pub source: Source,
+    pub source: ModelSource,
     pub kind: EntryKind,
     /// Level of detail of a character's bones; the default for a mesh.
     pub detail: CharacterDetail,
@@ -62,6 +62,39 @@ pub(super) enum Source {
     File(PathBuf),
 }
 
+/// The source of an object's model.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) enum ModelSource {
+    /// One name, from the field `file`.
+    One(Source),
+    /// One name for each level of detail, the finest first, from the field `levels`.
+    Levels(Vec<Source>),
+}
+
+impl ModelSource {
+    /// Path in the scene file of the name of a level. `entry` is the path of the object's entry.
+    pub fn path(&self, entry: &str, level: usize) -> String {
+        match self {
+            Self::One(_) => format!("{entry}.file"),
+            Self::Levels(_) => format!("{entry}.levels[{level}]"),
+        }
+    }
+
+    /// All names, the finest level first.
+    pub fn names(&self) -> &[Source] {
+        match self {
+            Self::One(source) => std::slice::from_ref(source),
+            Self::Levels(all) => all,
+        }
+    }
+
+    /// The name of a level. The levels of one file have one name.
+    pub fn name(&self, level: usize) -> &Source {
+        let names = self.names();
+        &names[level.min(names.len() - 1)]
+    }
+}
+
 /// The prefix of built-in names.
 pub(super) const BUILT_IN: &str = "builtin:";
 
@@ -71,6 +104,13 @@ impl std::fmt::Display for Source {
             Self::BuiltIn(name) => write!(text, "{BUILT_IN}{name}"),
             Self::File(path) => write!(text, "{}", path.display()),
         }
+    }
+}
+
+impl std::fmt::Display for ModelSource {
+    fn fmt(&self, text: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let names: Vec<String> = self.names().iter().map(Source::to_string).collect();
+        write!(text, "{}", names.join(", "))
     }
 }
 

@@ -8,13 +8,13 @@ use std::sync::Arc;
 use image::{DynamicImage, Rgba, RgbaImage};
 
 use super::builtin::BuiltIns;
-use super::entries::{EntryKind, ObjectEntry, PlayEntry, ReliefEntry, Source};
+use super::entries::{EntryKind, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Source};
 use super::spec::SceneFile;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::Error;
-use crate::asset::{Mesh, Model};
+use crate::asset::{Clip, Mesh, Model};
 use crate::scene::Relief;
-use crate::skinning::{add_levels, add_levels_and_at_rest, at_rest, poses_of};
+use crate::skinning::{Examined, add_levels, add_levels_and_at_rest, at_rest, join_levels_in, poses_of};
 use crate::surface::{Green, HeightMap, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceVertex};
 use crate::terrain::config::ZoneTexture;
 use crate::terrain::texture::TerrainTexture;
@@ -72,7 +72,8 @@ impl SceneFile {
     /// `read` gets paths relative to the scene file. Names with the prefix `builtin:` come from `built_ins`;
     /// [`NoBuiltIns`](super::NoBuiltIns) has none. Levels are computed for all meshes and characters. For characters, they fit
     /// the clips that the characters play, at 15 poses a second and at most 48 poses per clip. A model that several objects show
-    /// is read and simplified only once, for the clips of all these objects.
+    /// is read and simplified only once, for the clips of all these objects. Levels that an artist made are joined instead
+    /// ([`join_levels`](crate::ops::skinning::join_levels)); their errors are measured in the same poses.
     ///
     /// # Errors
     /// [`InputError`] with the path of the name in the scene file, in these cases: a file cannot be read or understood; a file
@@ -101,9 +102,10 @@ impl SceneFile {
 struct Files<'a> {
     read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
     built_ins: &'a dyn BuiltIns,
-    models: HashMap<Source, Arc<Model>>,
-    needs: HashMap<Source, Needs>,
-    levelled: HashMap<Source, Levelled>,
+    /// The levels of detail that each source has, the finest first; at least one.
+    models: HashMap<Source, Vec<Arc<Model>>>,
+    needs: HashMap<ModelSource, Needs>,
+    levelled: HashMap<ModelSource, Levelled>,
 }
 
 /// A model with levels of detail, shared by all objects that show the model.
@@ -136,21 +138,23 @@ impl<'a> Files<'a> {
 
     /// Reads an object's model, and records the object's use of it.
     fn add_needs(&mut self, entry: &ObjectEntry) -> Result<(), InputError> {
-        let path = format!("{}.file", entry.path);
-        let model = self.model(&path, &entry.source)?;
-        if model.meshes.iter().all(|mesh| mesh.indices.is_empty()) {
-            let bound = "must have a mesh with triangles";
-            return Err(InputError::new(path, &entry.source, bound));
+        let models = self.models(entry)?;
+        let is_empty = |model: &Arc<Model>| model.meshes.iter().all(|mesh| mesh.indices.is_empty());
+        let refused = |level: usize, bound: &str| {
+            InputError::new(entry.source.path(&entry.path, level), entry.source.name(level), bound)
+        };
+        if let Some(level) = models.iter().position(is_empty) {
+            return Err(refused(level, "must have a mesh with triangles"));
         }
+        let model = &models[0];
         match &entry.kind {
             EntryKind::Relief(_) => {}
             EntryKind::Mesh => self.needs.entry(entry.source.clone()).or_default().is_at_rest = true,
             EntryKind::Character(play) => {
                 if model.clips.is_empty() {
-                    let bound = "must have clips: list a model without among meshes";
-                    return Err(InputError::new(path, &entry.source, bound));
+                    return Err(refused(0, "must have clips: list a model without among meshes"));
                 }
-                let clips = played(entry, play, &model)?;
+                let clips = played(entry, play, model)?;
                 self.needs.entry(entry.source.clone()).or_default().clips.extend(clips);
             }
         }
@@ -158,37 +162,50 @@ impl<'a> Files<'a> {
     }
 
     fn object(&mut self, entry: &ObjectEntry) -> Result<Loaded, InputError> {
-        let path = format!("{}.file", entry.path);
-        let within = |error: InputError| within(&path, &entry.source, &error);
+        let within = |error: InputError| in_levels(entry, &error);
         match &entry.kind {
             EntryKind::Relief(relief) => {
-                let model = self.model(&path, &entry.source)?;
-                let rest = at_rest(&model).map_err(within)?;
+                let rest = at_rest(&self.models(entry)?[0]).map_err(within)?;
                 Ok(Loaded::Relief(Box::new(self.relief(entry, relief, &rest)?)))
             }
             EntryKind::Mesh | EntryKind::Character(_) => {
-                let Levelled { model, resting } = self.levelled(&path, &entry.source).map_err(within)?;
+                let Levelled { model, resting } = self.levelled(entry).map_err(within)?;
                 let resting = resting.filter(|_| entry.kind == EntryKind::Mesh);
                 Ok(Loaded::Model(resting.unwrap_or(model)))
             }
         }
     }
 
-    fn model(&mut self, path: &str, source: &Source) -> Result<Arc<Model>, InputError> {
+    /// The levels of detail that the source of an entry has, the finest first; at least one.
+    fn models(&mut self, entry: &ObjectEntry) -> Result<Vec<Arc<Model>>, InputError> {
+        let levels = match &entry.source {
+            ModelSource::One(one) => return self.models_of(&entry.source.path(&entry.path, 0), one),
+            ModelSource::Levels(levels) => levels,
+        };
+        let finest = |(at, source): (usize, &Source)| {
+            let own = self.models_of(&entry.source.path(&entry.path, at), source)?;
+            Ok(own[0].clone())
+        };
+        levels.iter().enumerate().map(finest).collect()
+    }
+
+    /// The levels of detail in a file. `path` is the path of the file's name in the scene file.
+    fn models_of(&mut self, path: &str, source: &Source) -> Result<Vec<Arc<Model>>, InputError> {
         if let Some(known) = self.models.get(source) {
             return Ok(known.clone());
         }
-        let model = match source {
-            Source::BuiltIn(name) => self.built_ins.model(name),
+        let models = match source {
+            Source::BuiltIn(name) => self.built_ins.model(name).map(|model| vec![model]),
             Source::File(file) => {
                 let bytes = self.bytes(path, file)?;
                 let folder = file.parent().unwrap_or(Path::new(""));
-                Model::from_bytes_beside(file, &bytes, &|name| (self.read)(&folder.join(name)))
+                Model::levels_from_bytes_beside(file, &bytes, &|name| (self.read)(&folder.join(name)))
             }
         };
-        let model = Arc::new(model.map_err(|error| within(path, source, &error))?);
-        self.models.insert(source.clone(), model.clone());
-        Ok(model)
+        let models = models.map_err(|error| within(path, source, &error))?;
+        let models: Vec<_> = models.into_iter().map(Arc::new).collect();
+        self.models.insert(source.clone(), models.clone());
+        Ok(models)
     }
 
     fn bytes(&self, path: &str, file: &Path) -> Result<Vec<u8>, InputError> {
@@ -196,27 +213,23 @@ impl<'a> Files<'a> {
             .map_err(|error| InputError::new(path, file.display(), format!("cannot be read: {error}")))
     }
 
-    fn levelled(&mut self, path: &str, source: &Source) -> Result<Levelled, InputError> {
+    fn levelled(&mut self, entry: &ObjectEntry) -> Result<Levelled, InputError> {
+        let source = &entry.source;
         if let Some(known) = self.levelled.get(source) {
             return Ok(known.clone());
         }
-        let mut own = Model::clone(&*self.model(path, source)?);
+        let models = self.models(entry)?;
         let Needs { clips, is_at_rest } = self.needs.remove(source).unwrap_or_default();
         let clips: Vec<usize> = clips.into_iter().collect();
-        let poses = clips.iter().map(|clip| poses_of(&own.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
-        let poses = poses.into_iter().map(|poses| (poses / SPARSER).clamp(LEAST_POSES, MOST_POSES)).max();
-        let poses = poses.unwrap_or(1);
+        let own = levelled(&models, &clips, is_at_rest)?;
         let mut resting = None;
         if is_at_rest {
-            add_levels_and_at_rest(&mut own, &clips, poses)?;
             let mut rest = at_rest(&own)?;
             for (mesh, from) in rest.meshes.iter_mut().zip(&own.meshes) {
                 mesh.levels.clone_from(&from.levels);
                 mesh.partners.clone_from(&from.partners);
             }
             resting = Some(Arc::new(rest));
-        } else {
-            add_levels(&mut own, &clips, poses)?;
         }
         let own = Levelled { model: Arc::new(own), resting };
         self.levelled.insert(source.clone(), own.clone());
@@ -291,6 +304,41 @@ impl<'a> Files<'a> {
     }
 }
 
+/// One model of the levels of detail that an artist made, or the only model with levels. The errors of levels fit the clips
+/// and, if an object shows it, the rest pose.
+fn levelled(models: &[Arc<Model>], clips: &[usize], is_at_rest: bool) -> Result<Model, InputError> {
+    let sparse = |clip: &Clip| Ok((poses_of(clip)? / SPARSER).clamp(LEAST_POSES, MOST_POSES));
+    if models.len() > 1 {
+        let models: Vec<Model> = models.iter().map(|model| Model::clone(model)).collect();
+        return join_levels_in(&models, &Examined { clips, poses: sparse, is_at_rest });
+    }
+    let mut own = Model::clone(&models[0]);
+    let poses = clips.iter().map(|clip| sparse(&own.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
+    let poses = poses.into_iter().max().unwrap_or(1);
+    match is_at_rest {
+        true => add_levels_and_at_rest(&mut own, clips, poses)?,
+        false => add_levels(&mut own, clips, poses)?,
+    };
+    Ok(own)
+}
+
+/// Reports a mistake in the levels of an entry. If the path of the error begins with a model (`models[1].skins[0]`), the
+/// reported path leads to the name of this model in the scene file.
+fn in_levels(entry: &ObjectEntry, error: &InputError) -> InputError {
+    let of_model = error.path.strip_prefix("models[").and_then(|rest| rest.split_once("]."));
+    let level = of_model.and_then(|(level, path)| Some((level.parse().ok()?, path)));
+    match (level, &entry.source) {
+        (Some((level, path)), ModelSource::Levels(_)) => {
+            let inner = InputError { path: path.to_owned(), ..error.clone() };
+            within(&entry.source.path(&entry.path, level), entry.source.name(level), &inner)
+        }
+        (None, ModelSource::Levels(_)) => {
+            InputError::new(format!("{}.levels", entry.path), &entry.source, error.to_string())
+        }
+        (_, ModelSource::One(one)) => within(&entry.source.path(&entry.path, 0), one, error),
+    }
+}
+
 /// Reports a mistake inside a file. The path of the error leads to the file's name in the scene file.
 fn within(path: &str, source: &Source, error: &InputError) -> InputError {
     InputError::new(path, source, error.to_string())
@@ -350,6 +398,145 @@ mod tests {
     use super::*;
     use crate::samples::Samples;
     use crate::scene_file::NoBuiltIns;
+
+    fn scene(entry: &str) -> Result<SceneFile, InputError> {
+        SceneFile::from_json(&format!(r#"{{{entry}, "camera": {{"at": [0, 2, 9], "look": [0, 1, 0]}}}}"#))
+    }
+
+    /// The error of an entry with an instance, from files that are read by `read`.
+    fn refused(list: &str, fields: &str, read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>) -> InputError {
+        let entry = format!(r#""{list}": [{{{fields}, "instances": [{{"at": [0, 0, 0]}}]}}]"#);
+        let loaded = scene(&entry).and_then(|file| file.load(read, &Samples).map(|_| ()));
+        loaded.expect_err(fields)
+    }
+
+    /// Files by name: the rock and the creature as binary glTF.
+    fn files(name: &Path) -> std::io::Result<Vec<u8>> {
+        let model = match name.to_str() {
+            Some("rock.glb") => crate::samples::rock(),
+            Some("creature.glb") => crate::samples::creature(),
+            _ => return Err(std::io::ErrorKind::NotFound.into()),
+        };
+        model.and_then(|model| model.to_glb()).map_err(std::io::Error::other)
+    }
+
+    /// Levels that an artist made: their names are listed, and an object has a level for each.
+    #[test]
+    fn levels_have_a_model_each() {
+        let file = scene(
+            r#""meshes": [
+                {"levels": ["rock.glb", "builtin:wall", "builtin:rock"], "instances": [{"at": [0, 0, 0]}]},
+                {"file": "builtin:rock", "instances": [{"at": [3, 0, 0]}]},
+                {"levels": ["creature.glb", "builtin:creature"], "instances": [{"at": [6, 0, 0]}]}
+            ],
+            "characters": [
+                {"levels": ["creature.glb", "builtin:creature"], "instances": [{"at": [9, 0, 0]}]}
+            ]"#,
+        );
+        let file = file.expect("a scene");
+        assert_eq!(file.files(), [Path::new("creature.glb"), Path::new("rock.glb")]);
+        let loaded = file.load(&files, &Samples).expect("loaded");
+        let models = loaded.objects.iter().map(|object| match object {
+            Loaded::Model(model) => model.clone(),
+            Loaded::Relief(_) => unreachable!("there is none"),
+        });
+        let models: Vec<Arc<Model>> = models.collect();
+        let errors =
+            |model: &Model| model.meshes[0].levels.iter().map(|level| level.error).collect::<Vec<_>>();
+        let shown = |model: &Model| {
+            let at =
+                |level: u32| model.meshes.iter().map(|mesh| mesh.triangles(level).len()).sum::<usize>() / 3;
+            (0..=model.meshes[0].levels.len() as u32).map(at).collect::<Vec<_>>()
+        };
+        let [rock, wall, creature] = ["rock", "wall", "creature"].map(|name| {
+            let model = Samples.model(name).expect("a built-in model");
+            model.meshes.iter().map(|mesh| mesh.indices.len() / 3).sum::<usize>()
+        });
+        assert_eq!(shown(&models[0]), [rock, wall, rock]);
+        let found = errors(&models[0]);
+        // The third level is the rock again, so it takes the place of the wall.
+        assert!(found[0] > 0.1 && found[1] == found[0].next_up(), "{found:?}");
+        assert_eq!(file.objects[0].source.to_string(), "rock.glb, builtin:wall, builtin:rock");
+        // The same model as a mesh, at rest, and as a character.
+        assert!(models[2].clips.is_empty() && !models[3].clips.is_empty());
+        assert_eq!(errors(&models[2]), errors(&models[3]));
+        assert_eq!((shown(&models[2]), shown(&models[3])), (vec![creature; 2], vec![creature; 2]));
+    }
+
+    #[test]
+    fn mistakes_in_levels_are_refused_with_their_place() {
+        let none = |_: &Path| Err(std::io::ErrorKind::NotFound.into());
+        let refused_with = |list: &str, fields: &str, path: &str, words: &str| {
+            let found = refused(list, fields, &files);
+            assert!(found.path == path && found.to_string().contains(words), "{found}");
+        };
+        let meshes = |fields: &str, path: &str, words: &str| refused_with("meshes", fields, path, words);
+        let characters =
+            |fields: &str, path: &str, words: &str| refused_with("characters", fields, path, words);
+        meshes(r#""clip": 0"#, "meshes[0].clip", "levels");
+        meshes(r#""transition": "hard""#, "meshes[0].file", "levels in its place");
+        meshes(r#""levels": "rock.glb""#, "meshes[0].levels", "must be a list");
+        meshes(r#""levels": ["rock.glb"]"#, "meshes[0].levels.len", "2..=8");
+        let nine = format!(r#""levels": [{}]"#, [r#""rock.glb""#; 9].join(", "));
+        meshes(&nine, "meshes[0].levels.len", "2..=8");
+        meshes(r#""levels": ["rock.glb", 3]"#, "meshes[0].levels[1]", "= 3");
+        meshes(r#""levels": ["rock.glb", "rock.png"]"#, "meshes[0].levels[1]", ".glb, .gltf or .obj");
+        meshes(r#""levels": ["rock.glb", "gone.glb"]"#, "meshes[0].levels[1]", "cannot be read");
+        meshes(r#""levels": ["rock.glb", "builtin:cow"]"#, "meshes[0].levels[1]", "creature, rock, wall");
+        let both = r#""file": "rock.glb", "levels": ["rock.glb", "rock.glb"]"#;
+        meshes(both, "meshes[0].levels", "must not be given beside file");
+        let relief = r#""levels": ["rock.glb", "rock.glb"], "material": {"relief": "builtin:bricks"}"#;
+        meshes(relief, "meshes[0].levels", "must not be given beside material");
+        let moving = r#""levels": ["rock.glb", "creature.glb"]"#;
+        meshes(moving, "meshes[0].levels[1]", "clips.len = ");
+        characters(r#""levels": ["creature.glb", "rock.glb"]"#, "characters[0].levels[1]", "skinned = 0");
+        characters(r#""levels": ["rock.glb", "rock.glb"]"#, "characters[0].levels[0]", "must have clips");
+        let found = refused("meshes", r#""levels": ["rock.glb", "rock.glb"]"#, &none);
+        assert_eq!((&*found.path, &*found.value), ("meshes[0].levels[0]", "rock.glb"));
+    }
+
+    /// A file whose nodes have levels (`MSFT_lod`) is shown with these.
+    #[test]
+    fn files_have_levels_of_their_own() {
+        let document = |ids: &str| {
+            let mut near = crate::samples::rock().expect("valid");
+            let mut far = Samples.model("wall").expect("valid").meshes.remove(0);
+            (far.skin, far.material) = (near.meshes[0].skin, near.meshes[0].material);
+            (near.meshes[0].name, far.name) = ("near_0".to_owned(), "far_0".to_owned());
+            near.meshes.push(far);
+            let glb = near.to_glb().expect("written");
+            let length = u32::from_le_bytes(glb[12..16].try_into().expect("four bytes")) as usize;
+            let mut json: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).expect("JSON");
+            let nodes = json["nodes"].as_array_mut().expect("a list");
+            let at = |name: &str| nodes.iter().position(|node| node["name"] == name).expect("a node");
+            let (near, far) = (at("near"), at("far"));
+            nodes
+                .iter_mut()
+                .filter_map(|node| node["children"].as_array_mut())
+                .for_each(|all| all.retain(|node| *node != far));
+            let ids: serde_json::Value =
+                serde_json::from_str(&ids.replace("far", &far.to_string())).expect("JSON");
+            nodes[near]["extensions"] = serde_json::json!({ "MSFT_lod": { "ids": ids } });
+            let mut text = serde_json::to_vec(&json).expect("JSON");
+            text.resize(text.len().next_multiple_of(4), b' ');
+            let mut all = glb[..8].to_vec();
+            let rest = &glb[20 + length..];
+            all.extend(((20 + text.len() + rest.len()) as u32).to_le_bytes());
+            all.extend((text.len() as u32).to_le_bytes());
+            all.extend(&glb[16..20]);
+            all.extend(text);
+            all.extend(rest);
+            all
+        };
+        let file =
+            scene(r#""meshes": [{"file": "a.glb", "instances": [{"at": [0, 0, 0]}]}]"#).expect("a scene");
+        let loaded = file.load(&|_| Ok(document("[far]")), &Samples).expect("loaded");
+        let Loaded::Model(model) = &loaded.objects[0] else { unreachable!("a model") };
+        assert_eq!((model.meshes.len(), model.meshes[0].levels.len()), (2, 1));
+        let found = refused("meshes", r#""file": "a.glb""#, &|_| Ok(document("[far, 99]")));
+        assert_eq!((&*found.path, &*found.value), ("meshes[0].file", "a.glb"));
+        assert!(found.bound.contains("extensions.MSFT_lod.ids[1] = 99: must be below"), "{found}");
+    }
 
     /// A model shown by a mesh and by characters with different clips is simplified once, for all of them.
     #[test]

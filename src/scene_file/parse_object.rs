@@ -5,7 +5,8 @@ use std::path::Path;
 use glam::{DVec3, Quat, Vec3};
 
 use super::entries::{
-    BUILT_IN, EntryKind, InstanceEntry, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source, Spot,
+    BUILT_IN, EntryKind, InstanceEntry, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source,
+    Spot,
 };
 use super::json::{At, COORDINATE, Fields};
 use super::parse_character::{self, CharacterDetail};
@@ -14,12 +15,16 @@ use crate::InputError;
 use crate::animation::Wrap;
 use crate::asset::import::ENDINGS;
 use crate::scene::Transition;
+use crate::shared::lod::object::OBJECT_LEVELS;
 use crate::surface::ReliefShadow;
 use crate::surface::relief::{MAX_SCALE, ReliefMethod};
 
 /// Largest number of instances of a mesh and of a character. The limit for characters is lower, because their bones take memory.
 const MAX_MESHES: usize = 1 << 20;
 const MAX_CHARACTERS: usize = 1 << 16;
+
+/// Largest number of models that are the levels of detail of an object.
+const MAX_LEVELS: usize = OBJECT_LEVELS as usize;
 
 /// The largest start time of a clip in seconds, and the largest playback rate.
 const MAX_SECONDS: f64 = 1e6;
@@ -31,16 +36,22 @@ const SHADOWS: [(&str, ReliefShadow); 3] =
 
 /// An entry of `meshes`.
 pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
-    let fields = at.fields(&["file", "material", "transition", "lod", "instances", "scatter"])?;
+    let fields = at.fields(&["file", "levels", "material", "transition", "lod", "instances", "scatter"])?;
     let source = model(&fields)?;
+    if let (ModelSource::Levels(_), Some(levels), Some(_)) =
+        (&source, fields.get("levels"), fields.get("material"))
+    {
+        return Err(levels.error("must not be given beside material: a relief has one level of detail"));
+    }
     let kind = fields.maybe("material", |at| relief(&at))?.map_or(EntryKind::Mesh, EntryKind::Relief);
     placed(at, &fields, (source, kind), MAX_MESHES)
 }
 
 /// An entry of `characters`.
 pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
-    let known = ["file", "clip", "rate", "start", "wrap", "transition", "lod", "instances", "scatter"];
-    let fields = at.fields(&[&known[..], &parse_character::FIELDS].concat())?;
+    const KNOWN: [&str; 10] =
+        ["file", "levels", "clip", "rate", "start", "wrap", "transition", "lod", "instances", "scatter"];
+    let fields = at.fields(&[&KNOWN[..], &parse_character::FIELDS].concat())?;
     let source = model(&fields)?;
     let all = PlayEntry { clip: None, rate: 1.0, start: 0.0, wrap: Wrap::Loop };
     let kind = EntryKind::Character(play(&fields, &all)?);
@@ -51,7 +62,7 @@ pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
 fn placed(
     at: &At<'_>,
     fields: &Fields<'_>,
-    (source, kind): (Source, EntryKind),
+    (source, kind): (ModelSource, EntryKind),
     most: usize,
 ) -> Result<ObjectEntry, InputError> {
     let play = match &kind {
@@ -77,10 +88,19 @@ fn placed(
     Ok(ObjectEntry { path, source, kind, detail, transition, level_of_detail, instances, scatter })
 }
 
-/// The model's source, from the field `file`.
-fn model(fields: &Fields<'_>) -> Result<Source, InputError> {
-    let at = fields.need("file", "a .glb, .gltf or .obj file, or a built-in model")?;
-    source(&at, &ENDINGS, "must be a .glb, .gltf or .obj file")
+/// The model's source, from the field `file` or the field `levels`.
+fn model(fields: &Fields<'_>) -> Result<ModelSource, InputError> {
+    let one = |at: &At<'_>| source(at, &ENDINGS, "must be a .glb, .gltf or .obj file");
+    let Some(levels) = fields.get("levels") else {
+        let at =
+            fields.need("file", "a .glb, .gltf or .obj file, a built-in model, or levels in its place")?;
+        return Ok(ModelSource::One(one(&at)?));
+    };
+    if fields.get("file").is_some() {
+        return Err(levels.error("must not be given beside file"));
+    }
+    let all = levels.list(2, MAX_LEVELS)?.iter().map(one).collect::<Result<_, _>>()?;
+    Ok(ModelSource::Levels(all))
 }
 
 /// The source of a map: an image file or a built-in map.

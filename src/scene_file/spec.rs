@@ -63,7 +63,7 @@ impl SceneFile {
             }
         };
         for entry in &self.objects {
-            add(&entry.source);
+            entry.source.names().iter().for_each(&mut add);
             if let EntryKind::Relief(relief) = &entry.kind {
                 add(&relief.heights);
                 relief.albedo.iter().chain(&relief.normals).for_each(&mut add);

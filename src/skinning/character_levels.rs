@@ -21,15 +21,16 @@ pub fn level_errors_within(meshes: &[Mesh], most: usize) -> Vec<f32> {
     if most < 2 {
         return Vec::new();
     }
-    // For each error: the number of triangle indices that meshes lose when the allowed error reaches it. The key is the
-    // error's bits, which sort like the errors because errors are not negative.
-    let mut lost: BTreeMap<u32, usize> = BTreeMap::new();
+    // For each error: the number of triangle indices that meshes lose when the allowed error reaches it. Of joined models,
+    // one mesh loses indices where another gains some. The key is the error's bits, which sort like the errors because
+    // errors are not negative.
+    let mut lost: BTreeMap<u32, i64> = BTreeMap::new();
     for mesh in meshes {
-        let mut left = mesh.indices.len();
+        let mut left = mesh.indices.len() as i64;
         for level in &mesh.levels {
-            *lost.entry((level.error + 0.0).to_bits()).or_default() +=
-                left.saturating_sub(level.indices.len());
-            left = level.indices.len();
+            let own = level.indices.len() as i64;
+            *lost.entry((level.error + 0.0).to_bits()).or_default() += left - own;
+            left = own;
         }
     }
     let mut steps: Vec<Step> =
@@ -57,12 +58,12 @@ struct Step {
     error: f32,
     /// Natural logarithm of the error.
     logarithm: f64,
-    /// Number of triangle indices that the step removes.
-    lost: usize,
+    /// Number of triangle indices that the step removes; negative if it adds some.
+    lost: i64,
 }
 
 impl Step {
-    fn new(error: f32, lost: usize) -> Self {
+    fn new(error: f32, lost: i64) -> Self {
         Self { error, logarithm: libm::log(f64::from(error)), lost }
     }
 

@@ -20,7 +20,7 @@ pub const MAX_SKIN_BONES: usize = 1 << 16;
 /// The part of a clustered mesh that one level of detail draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClusterLevel {
-    /// Number of vertices. They have the first slots ([`Clusters::order`]).
+    /// Number of vertices of this level and of all coarser levels. They have the first slots ([`Clusters::order`]).
     pub vertices: u32,
     /// Number of clusters that hold the level's vertices, starting with cluster 0. The last of them may also hold
     /// vertices of a finer level.
@@ -116,7 +116,7 @@ impl Clusters {
         Ok(Self {
             vertices: order.iter().map(|vertex| vertices[*vertex as usize]).collect(),
             uv: order.iter().map(|vertex| mesh.uv[*vertex as usize]).collect(),
-            indices: all_triangles(mesh).flatten().map(|index| slot[*index as usize]).collect(),
+            indices: mesh.all_triangles().flatten().map(|index| slot[*index as usize]).collect(),
             levels: levels(mesh, &bands),
             influences: influences(&tiers, &order),
             morphs: morphs(mesh, &slot),
@@ -168,14 +168,10 @@ fn slots(order: &[u32]) -> Vec<u32> {
     slots
 }
 
-fn all_triangles(mesh: &Mesh) -> impl Iterator<Item = &[u32]> {
-    (0..=mesh.levels.len() as u32).map(|level| mesh.triangles(level))
-}
-
 /// For each vertex, the coarsest level that uses it; 0 (the full mesh) if no triangle uses it.
 fn bands(mesh: &Mesh) -> Vec<u32> {
     let mut bands = vec![0; mesh.vertices()];
-    for (level, triangles) in (0..).zip(all_triangles(mesh)) {
+    for (level, triangles) in (0..).zip(mesh.all_triangles()) {
         triangles.iter().for_each(|vertex| bands[*vertex as usize] = level);
     }
     bands
@@ -190,7 +186,7 @@ fn levels(mesh: &Mesh, bands: &[u32]) -> Vec<ClusterLevel> {
         first_index += indices;
         ClusterLevel { vertices: vertices as u32, clusters, first_index: first_index - indices, indices }
     };
-    (0..).zip(all_triangles(mesh)).map(level).collect()
+    (0..).zip(mesh.all_triangles()).map(level).collect()
 }
 
 /// The mesh's vertices in the order of slots. Vertices of coarse levels come first. Within a level, they are sorted by

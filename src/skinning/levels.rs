@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use super::attribute_weights::NORMAL;
 use super::pose::{Moment, moments};
 use crate::InputError;
-use crate::asset::Model;
 use crate::asset::mesh::{MAX_LEVELS, MeshLevel};
+use crate::asset::{Mesh, Model};
 use crate::mesh::progressive::{Became, partners};
 use crate::mesh::simplify::{Groups, Simplified, SimplifyOptions, Surface, simplify_watched};
 use bodies::Bodies;
@@ -40,7 +40,7 @@ const STEP: f32 = std::f32::consts::SQRT_2;
 const WORTHWHILE: f64 = 0.9;
 
 /// Safety factor of [`MeshLevel::error`] over the sampled maximum, for poses between the samples.
-const ERROR_MARGIN: f32 = 1.03;
+pub(super) const ERROR_MARGIN: f32 = 1.03;
 
 /// The coarser levels of detail of one mesh of a model.
 #[derive(Debug, Clone)]
@@ -233,7 +233,7 @@ fn looked_at(moments: &[Moment]) -> Vec<Moment> {
 /// For loading screens, use [`add_levels_with_progress`].
 ///
 /// # Errors
-/// [`InputError`] in the cases of [`MeshLevels::new`].
+/// [`InputError`] in the cases of [`MeshLevels::new`], and for a model that [`join_levels`](super::join_levels) made.
 pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Vec<MeshLevels>, InputError> {
     let looks = Looks { clips, poses, is_at_rest: false };
     Ok(watched(model, looks, &mut unwatched)?.unwrap_or_default())
@@ -302,6 +302,10 @@ fn watched(
     watch: &mut dyn FnMut(f32) -> ControlFlow<()>,
 ) -> Result<Option<Vec<MeshLevels>>, InputError> {
     let Looks { clips, poses, is_at_rest } = looks;
+    if let Some(at) = model.meshes.iter().position(Mesh::is_of_coarse_levels) {
+        let bound = "must be at least 3: a model that was joined from levels is not simplified";
+        return Err(InputError::new(format!("model.meshes[{at}].indices.len"), 0, bound));
+    }
     let each = (0..model.meshes.len()).map(|mesh| moments(model, mesh, clips, poses));
     if watch(0.0).is_break() {
         return Ok(None);
@@ -384,7 +388,7 @@ fn found(whole: &Whole<'_>, welded: &Welded, keys: &Keys, simplified: &Simplifie
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::asset::{Influence, Influences, Mesh};
+    use crate::asset::{Influence, Influences};
     use crate::skinning::pose::Pose;
 
     /// If the simplifier saw all moments, the measured errors equal its own distances. No nearby triangle is overlooked.

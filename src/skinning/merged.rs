@@ -8,7 +8,8 @@ use std::ops::Range;
 
 use super::character_levels::{level_errors_within, own_levels};
 use crate::InputError;
-use crate::asset::Model;
+use crate::asset::{Mesh, Model};
+pub(super) use joined::morphs;
 use joined::{Union, joined};
 
 pub use parts::{MAX_PARTS, PartKey};
@@ -54,7 +55,7 @@ pub struct Part {
 /// Drawing the merged model is equivalent to drawing the model's meshes. At full detail, it has the same triangles with
 /// the same positions, normals and tangents to the bit, in every pose. At coarser levels, each mesh contributes its own
 /// level from [`own_levels`]. Vertices keep the order and weights of their influences. The one skin has every pair of a
-/// bone and an inverse bind matrix that a vertex follows. Meshes without triangles are left out.
+/// bone and an inverse bind matrix that a vertex follows. Meshes without triangles at any level are left out.
 ///
 /// Meshes with morph targets are merged only with meshes that have the same morph weights in every clip. Parts differ
 /// in their [`PartKey`]. There are at most [`MAX_PARTS`] parts, unless the merged meshes need more. Each use of alpha
@@ -106,11 +107,16 @@ fn bare(model: &Model) -> Model {
     }
 }
 
+/// Whether a mesh has a triangle at any level.
+fn has_triangles(mesh: &Mesh) -> bool {
+    mesh.all_triangles().any(|triangles| !triangles.is_empty())
+}
+
 /// Groups of meshes that may be merged. Meshes without morph targets form one group. Meshes with morph targets form one
 /// group per set of morph weights. Meshes without triangles are left out.
 fn groups(model: &Model) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    for (at, mesh) in model.meshes.iter().enumerate().filter(|(_, mesh)| !mesh.indices.is_empty()) {
+    for (at, mesh) in model.meshes.iter().enumerate().filter(|(_, mesh)| has_triangles(mesh)) {
         let fits = |group: &&mut Vec<usize>| {
             let other = &model.meshes[group[0]];
             match (joined::morphs(mesh), joined::morphs(other)) {
@@ -139,7 +145,7 @@ impl Merged {
         let meshes: Vec<_> = sources.iter().map(|mesh| &model.meshes[*mesh]).collect();
         let own: Vec<Vec<u32>> = meshes.iter().map(|mesh| own_levels(mesh, &self.errors)).collect();
         let mesh = joined(model, &meshes, &own, &self.errors, union)?;
-        let each = |mesh: &&crate::asset::Mesh| std::iter::repeat_n(mesh.material, mesh.vertices());
+        let each = |mesh: &&Mesh| std::iter::repeat_n(mesh.material, mesh.vertices());
         self.materials.push(meshes.iter().flat_map(each).collect());
         let all = sources.iter().zip(&meshes);
         let own_source = all.flat_map(|(at, mesh)| std::iter::repeat_n(*at as u32, mesh.vertices()));

@@ -17,6 +17,7 @@ pub mod extent;
 #[cfg(feature = "gpu")]
 pub mod frame;
 pub mod instance_lod;
+mod joined_levels;
 pub mod levels;
 pub mod merged;
 pub mod morph;
@@ -37,6 +38,9 @@ pub use character_levels::{level_errors, level_errors_within, own_levels};
 pub use collapse::collapse_bones;
 pub use extent::Extent;
 pub use instance_lod::{FadeRange, InstanceLod};
+pub use joined_levels::join_levels;
+#[cfg(feature = "gpu")]
+pub(crate) use joined_levels::{Examined, join_levels_in};
 #[cfg(feature = "gpu")]
 pub(crate) use levels::add_levels_and_at_rest;
 pub use levels::{MeshLevels, add_levels, add_levels_with_progress};

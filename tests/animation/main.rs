@@ -12,6 +12,7 @@ mod gating;
 use relievo_testing as harness;
 mod import;
 mod layers;
+mod lod;
 mod malformed;
 mod measures;
 mod meshes;

@@ -3,6 +3,8 @@
 mod budgets;
 mod characters;
 mod criteria;
+mod foreign;
+mod joined;
 mod linear;
 mod promise;
 mod stage;

@@ -72,6 +72,20 @@ impl Stage {
         stage
     }
 
+    /// Instances of a model: a character in its first clip, or a mesh if it has no clips.
+    pub fn of_model(model: &Model, level_of_detail: &LevelOfDetail, placements: &[Placement]) -> Self {
+        let is_mesh = model.clips.is_empty();
+        let add = |scene: &mut Scene| match is_mesh {
+            true => scene.add_mesh(model, placements.len()).expect("added"),
+            false => scene.add_character(model, placements.len()).expect("added"),
+        };
+        let mut stage = Self::of(add, level_of_detail, placements);
+        for instance in stage.instances.iter().filter(|_| !is_mesh) {
+            stage.scene.play(*instance, &Play::new("0")).expect("a clip");
+        }
+        stage
+    }
+
     fn of(
         add: impl FnOnce(&mut Scene) -> ObjectId,
         level_of_detail: &LevelOfDetail,

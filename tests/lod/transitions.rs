@@ -19,8 +19,11 @@ fn forced(level: u32) -> LevelOfDetail {
     LevelOfDetail { choice: LevelChoice::Forced(level), ..LevelOfDetail::default() }
 }
 
+/// Makes a stage of one object.
+pub type Kind = fn(&LevelOfDetail, &[Placement]) -> Stage;
+
 /// What may be drawn: a mesh, and a character.
-const KINDS: [fn(&LevelOfDetail, &[Placement]) -> Stage; 2] = [Stage::of_mesh, Stage::of_character];
+const KINDS: [Kind; 2] = [Stage::of_mesh, Stage::of_character];
 
 /// The distance at which a fraction of the way is gone.
 fn distance_at(way: f32) -> f32 {
@@ -39,10 +42,7 @@ const FINER: usize = 1;
 const COARSER: usize = 2;
 
 impl Trio {
-    fn new(
-        kind: fn(&LevelOfDetail, &[Placement]) -> Stage,
-        outputs: Vec<(TargetFormat, Vec<Layer>)>,
-    ) -> Self {
+    fn new(kind: Kind, outputs: Vec<(TargetFormat, Vec<Layer>)>) -> Self {
         let at = [Placement::at([0.0; 3])];
         let mut stages = [
             kind(&with(Transition::Dither(Pace::Band(0.1))), &at),
@@ -126,63 +126,68 @@ fn fades(pace: Pace) -> [Transition; 4] {
 /// its share of the pixels; so no background shows where both cover.
 #[test]
 fn a_dither_is_one_level_or_the_other_in_each_pixel() {
+    KINDS.into_iter().for_each(dithers);
+}
+
+pub fn dithers(kind: Kind) {
     let mut all = outputs();
     all.push((TargetFormat::srgb().with_samples(4), COLORS.to_vec()));
-    for kind in KINDS {
-        let mut trio = Trio::new(kind, all.clone());
-        for way in [0.25, 0.5, 0.8] {
-            trio.look(distance_at(way));
-            for (at, (format, layers)) in all.iter().enumerate() {
-                let [found, finer, coarser] = [CHANGING, FINER, COARSER].map(|stage| trio.bytes(at, stage));
-                let size = texel(format);
-                let pixels = found.chunks(size).zip(finer.chunks(size)).zip(coarser.chunks(size));
-                let (mut fine, mut coarse) = (0, 0);
-                for (at, ((found, finer), coarser)) in pixels.enumerate() {
-                    assert!(found == finer || found == coarser, "{layers:?}, pixel {at}: {found:?}");
-                    if finer != coarser {
-                        fine += u32::from(found == finer);
-                        coarse += u32::from(found == coarser);
-                    }
+    let mut trio = Trio::new(kind, all.clone());
+    for way in [0.25, 0.5, 0.8] {
+        trio.look(distance_at(way));
+        for (at, (format, layers)) in all.iter().enumerate() {
+            let [found, finer, coarser] = [CHANGING, FINER, COARSER].map(|stage| trio.bytes(at, stage));
+            let size = texel(format);
+            let pixels = found.chunks(size).zip(finer.chunks(size)).zip(coarser.chunks(size));
+            let (mut fine, mut coarse) = (0, 0);
+            for (at, ((found, finer), coarser)) in pixels.enumerate() {
+                assert!(found == finer || found == coarser, "{layers:?}, pixel {at}: {found:?}");
+                if finer != coarser {
+                    fine += u32::from(found == finer);
+                    coarse += u32::from(found == coarser);
                 }
-                if layers[..] == [Layer::Depth] || layers[..] == [Layer::Velocity] {
-                    continue;
-                }
-                assert!(fine + coarse > 60, "{layers:?}: the levels differ in {} pixels", fine + coarse);
-                let share = coarse as f32 / (fine + coarse) as f32;
-                assert!((share - way).abs() < 0.2, "{layers:?}: {share} at {way}");
             }
-            let [found, finer, coarser] = [CHANGING, FINER, COARSER].map(|stage| trio.depths(2, stage));
-            let pixels = found.iter().zip(&finer).zip(&coarser);
-            assert!(pixels.clone().all(|((found, finer), coarser)| found == finer || found == coarser));
-            assert!(found != finer && found != coarser, "depth is dithered too");
+            if layers[..] == [Layer::Depth] || layers[..] == [Layer::Velocity] {
+                continue;
+            }
+            assert!(fine + coarse > 60, "{layers:?}: the levels differ in {} pixels", fine + coarse);
+            let share = coarse as f32 / (fine + coarse) as f32;
+            assert!((share - way).abs() < 0.2, "{layers:?}: {share} at {way}");
         }
-        assert_eq!(trio.stages[CHANGING].listed().iter().sum::<u32>(), 2, "both levels are listed");
+        let [found, finer, coarser] = [CHANGING, FINER, COARSER].map(|stage| trio.depths(2, stage));
+        let pixels = found.iter().zip(&finer).zip(&coarser);
+        assert!(pixels.clone().all(|((found, finer), coarser)| found == finer || found == coarser));
+        assert!(found != finer && found != coarser, "depth is dithered too");
     }
+    assert_eq!(trio.stages[CHANGING].listed().iter().sum::<u32>(), 2, "both levels are listed");
 }
 
 /// Before and after its band, and after its time, a transition leaves no trace: the picture is that of the level alone, to the
 /// bit, in every output.
 #[test]
 fn a_finished_transition_leaves_no_trace() {
+    KINDS.into_iter().for_each(leaves_no_trace);
+    ends_in_time(Stage::of_mesh);
+}
+
+pub fn leaves_no_trace(kind: Kind) {
     let all = outputs();
-    for kind in KINDS {
-        let mut trio = Trio::new(kind, all.clone());
-        for transition in fades(Pace::Band(0.1)) {
-            trio.set(transition);
-            for (distance, alone) in [(85.0, FINER), (115.0, COARSER)] {
-                trio.look(distance);
-                for (at, (_, layers)) in all.iter().enumerate() {
-                    let is_equal = trio.bytes(at, CHANGING) == trio.bytes(at, alone);
-                    assert!(is_equal, "{transition:?}, {layers:?} at {distance}");
-                    assert!(
-                        trio.depths(at, CHANGING) == trio.depths(at, alone),
-                        "{transition:?}, {layers:?}"
-                    );
-                }
+    let mut trio = Trio::new(kind, all.clone());
+    for transition in fades(Pace::Band(0.1)) {
+        trio.set(transition);
+        for (distance, alone) in [(85.0, FINER), (115.0, COARSER)] {
+            trio.look(distance);
+            for (at, (_, layers)) in all.iter().enumerate() {
+                let is_equal = trio.bytes(at, CHANGING) == trio.bytes(at, alone);
+                assert!(is_equal, "{transition:?}, {layers:?} at {distance}");
+                assert!(trio.depths(at, CHANGING) == trio.depths(at, alone), "{transition:?}, {layers:?}");
             }
         }
     }
-    let mut trio = Trio::new(Stage::of_mesh, all[..1].to_vec());
+}
+
+pub fn ends_in_time(kind: Kind) {
+    let mut trio = Trio::new(kind, outputs()[..1].to_vec());
     for transition in fades(Pace::Seconds(0.2)) {
         trio.set(transition);
         trio.look(80.0);
@@ -205,39 +210,39 @@ fn a_finished_transition_leaves_no_trace() {
 /// documented.
 #[test]
 fn no_background_shows_where_both_levels_cover() {
+    KINDS.into_iter().for_each(hides_background);
+}
+
+pub fn hides_background(kind: Kind) {
     let is_background = |pixel: &[u8]| pixel[..3] == [255, 0, 255];
-    for kind in KINDS {
-        let mut trio = Trio::new(kind, outputs()[..1].to_vec());
-        for transition in fades(Pace::Band(0.1)) {
-            trio.set(transition);
-            let mut shown = 0;
-            for way in [0.1, 0.3, 0.5, 0.7, 0.9] {
-                trio.look(distance_at(way));
-                let [found, finer, coarser] = [CHANGING, FINER, COARSER].map(|stage| trio.bytes(0, stage));
-                // How purple a pixel is: the background is as purple as can be.
-                let purple =
-                    |pixel: &[u8]| i32::midpoint(pixel[0].into(), pixel[2].into()) - i32::from(pixel[1]);
-                let of_levels =
-                    finer.chunks(4).chain(coarser.chunks(4)).filter(|pixel| !is_background(pixel));
-                let most = of_levels.map(purple).max().expect("something is drawn");
-                assert!(most < 60, "{most}: no object is purple");
-                let pixels = found.chunks(4).zip(finer.chunks(4)).zip(coarser.chunks(4));
-                let mut covered = 0;
-                for (at, ((found, finer), coarser)) in pixels.enumerate() {
-                    if is_background(finer) || is_background(coarser) {
-                        continue;
-                    }
-                    covered += 1;
-                    let is_purple = purple(found) > most + 3;
-                    shown += u32::from(is_purple);
-                    let may_show = matches!(transition, Transition::CrossFade(_));
-                    assert!(!is_purple || may_show, "{transition:?} at {way}, pixel {at}: {found:?}");
+    let mut trio = Trio::new(kind, outputs()[..1].to_vec());
+    for transition in fades(Pace::Band(0.1)) {
+        trio.set(transition);
+        let mut shown = 0;
+        for way in [0.1, 0.3, 0.5, 0.7, 0.9] {
+            trio.look(distance_at(way));
+            let [found, finer, coarser] = [CHANGING, FINER, COARSER].map(|stage| trio.bytes(0, stage));
+            // How purple a pixel is: the background is as purple as can be.
+            let purple = |pixel: &[u8]| i32::midpoint(pixel[0].into(), pixel[2].into()) - i32::from(pixel[1]);
+            let of_levels = finer.chunks(4).chain(coarser.chunks(4)).filter(|pixel| !is_background(pixel));
+            let most = of_levels.map(purple).max().expect("something is drawn");
+            assert!(most < 60, "{most}: no object is purple");
+            let pixels = found.chunks(4).zip(finer.chunks(4)).zip(coarser.chunks(4));
+            let mut covered = 0;
+            for (at, ((found, finer), coarser)) in pixels.enumerate() {
+                if is_background(finer) || is_background(coarser) {
+                    continue;
                 }
-                assert!(covered > 500, "{covered} pixels are covered");
+                covered += 1;
+                let is_purple = purple(found) > most + 3;
+                shown += u32::from(is_purple);
+                let may_show = matches!(transition, Transition::CrossFade(_));
+                assert!(!is_purple || may_show, "{transition:?} at {way}, pixel {at}: {found:?}");
             }
-            if matches!(transition, Transition::CrossFade(_)) {
-                assert!(shown > 100, "what is behind shows through in {shown} pixels");
-            }
+            assert!(covered > 500, "{covered} pixels are covered");
+        }
+        if matches!(transition, Transition::CrossFade(_)) {
+            assert!(shown > 100, "what is behind shows through in {shown} pixels");
         }
     }
 }
@@ -246,32 +251,34 @@ fn no_background_shows_where_both_levels_cover() {
 /// weight, and with a fade in the level itself. A cross-fade has no opaque depth.
 #[test]
 fn other_layers_show_the_heavier_level() {
+    KINDS.into_iter().for_each(shows_the_heavier_level);
+}
+
+pub fn shows_the_heavier_level(kind: Kind) {
     let all = outputs();
-    for kind in KINDS {
-        let mut trio = Trio::new(kind, all.clone());
-        for transition in fades(Pace::Band(0.1)).into_iter().skip(1) {
-            trio.set(transition);
-            for way in [0.2, 0.45, 0.55, 0.8] {
-                trio.look(distance_at(way));
-                // A level that fades in stays blended until it is whole.
-                let is_coarser = way > 0.5 && !matches!(transition, Transition::FadeIn(_));
-                let alone = if is_coarser { COARSER } else { FINER };
-                for (at, (_, layers)) in all.iter().enumerate() {
-                    let is_color = layers.contains(&Layer::Color);
-                    let is_equal = trio.bytes(at, CHANGING) == trio.bytes(at, alone);
-                    assert!(
-                        is_color != is_equal || layers[..] == [Layer::Depth],
-                        "{transition:?} at {way}, {layers:?}"
-                    );
-                    // Nothing of a cross-fade is opaque.
-                    let is_cross = matches!(transition, Transition::CrossFade(_));
-                    let depths = trio.depths(at, CHANGING);
-                    if is_cross && layers[..] == [Layer::Depth] {
-                        assert!(depths.iter().all(|depth| *depth == 1.0), "{way}: nothing is opaque");
-                    } else if !is_cross || !is_color {
-                        let is_equal = depths == trio.depths(at, alone);
-                        assert!(is_equal, "{transition:?} at {way}, {layers:?}: depth");
-                    }
+    let mut trio = Trio::new(kind, all.clone());
+    for transition in fades(Pace::Band(0.1)).into_iter().skip(1) {
+        trio.set(transition);
+        for way in [0.2, 0.45, 0.55, 0.8] {
+            trio.look(distance_at(way));
+            // A level that fades in stays blended until it is whole.
+            let is_coarser = way > 0.5 && !matches!(transition, Transition::FadeIn(_));
+            let alone = if is_coarser { COARSER } else { FINER };
+            for (at, (_, layers)) in all.iter().enumerate() {
+                let is_color = layers.contains(&Layer::Color);
+                let is_equal = trio.bytes(at, CHANGING) == trio.bytes(at, alone);
+                assert!(
+                    is_color != is_equal || layers[..] == [Layer::Depth],
+                    "{transition:?} at {way}, {layers:?}"
+                );
+                // Nothing of a cross-fade is opaque.
+                let is_cross = matches!(transition, Transition::CrossFade(_));
+                let depths = trio.depths(at, CHANGING);
+                if is_cross && layers[..] == [Layer::Depth] {
+                    assert!(depths.iter().all(|depth| *depth == 1.0), "{way}: nothing is opaque");
+                } else if !is_cross || !is_color {
+                    let is_equal = depths == trio.depths(at, alone);
+                    assert!(is_equal, "{transition:?} at {way}, {layers:?}: depth");
                 }
             }
         }

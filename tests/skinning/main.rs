@@ -5,9 +5,12 @@ mod borders;
 mod collapse;
 mod fading;
 mod flat;
+#[path = "../lod/foreign.rs"]
+mod foreign;
 mod gating;
 use relievo_testing as harness;
 mod hull;
+mod joined;
 mod levels;
 mod merged;
 mod reduced;

@@ -11,7 +11,7 @@ use crate::InputError;
 
 /// Extensions that a document may require. Lights are not imported, but their extension is accepted, because Blender requires
 /// it in every file with lights.
-const READ: [&str; 7] = [
+const READ: [&str; 8] = [
     DRACO,
     "EXT_meshopt_compression",
     "KHR_meshopt_compression",
@@ -19,6 +19,7 @@ const READ: [&str; 7] = [
     "KHR_texture_transform",
     WEBP,
     "KHR_lights_punctual",
+    LOD,
 ];
 
 /// Prefix of material extensions. A document may require any of them, because the import leaves out everything in materials
@@ -30,6 +31,9 @@ pub const DRACO: &str = "KHR_draco_mesh_compression";
 
 /// Both names of the extension for meshoptimizer compression of buffer views. If a view has both, the first name counts.
 const MESHOPT: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
+
+/// Extension for levels of detail of nodes and materials.
+pub const LOD: &str = "MSFT_lod";
 
 /// Extension that draws many copies of a node's mesh.
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
@@ -60,6 +64,8 @@ pub struct Extensions {
     pub webp: Vec<Option<usize>>,
     /// For each texture, the name of an extension whose image cannot be read, and the remedy.
     pub unread_images: Vec<Option<(&'static str, &'static str)>>,
+    /// For each node with levels of detail, the node as JSON.
+    pub lods: Vec<Option<Value>>,
     /// For each node, whether `EXT_mesh_gpu_instancing` makes many copies of its mesh.
     instanced: Vec<bool>,
 }
@@ -92,6 +98,9 @@ impl Extensions {
                 Ok(extension(texture, WEBP, path)?.map(|Webp { source }| source))
             })?,
             unread_images: list(document, "textures").map(unread_image).collect(),
+            lods: (list(document, "nodes"))
+                .map(|node| node.pointer("/extensions/MSFT_lod").is_some().then(|| node.clone()))
+                .collect(),
             instanced: (list(document, "nodes"))
                 .map(|node| node.get("extensions").is_some_and(|all| all.get(INSTANCING).is_some()))
                 .collect(),
@@ -136,7 +145,7 @@ fn each<'a, T>(
 }
 
 /// Reads the extension `name` of the object at `path`; `None` if the object does not have it.
-fn extension<'a, T: Deserialize<'a>>(
+pub fn extension<'a, T: Deserialize<'a>>(
     object: &'a Value,
     name: &str,
     path: &str,

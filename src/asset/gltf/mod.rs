@@ -39,6 +39,14 @@
 //!   [`Model::blend`](crate::asset::Model::blend) turns the pattern into blending. Vertex colours, everything else in
 //!   materials, and materials that no mesh uses are left out.
 //!
+//! # Levels of detail
+//!
+//! At each level that `MSFT_lod` lists, another node takes the place of a node and of everything below it: below the same
+//! parent, with its own transform. A node without the extension is in every level. A node with fewer levels than others keeps
+//! its last one. Of nodes with levels below other nodes with levels, the upper ones count. Bones are the same at every level.
+//! A listed node must exist, be listed once, and have neither levels nor a parent; it must not be in the scene. There are at
+//! most 8 levels.
+//!
 //! `extras` may be any value. Integers may be written with a fraction of 0 or an exponent.
 //!
 //! # Extensions
@@ -56,6 +64,7 @@
 //! | `EXT_texture_webp` | if there is no PNG or JPEG beside it |
 //! | `KHR_materials_pbrSpecularGlossiness` | the diffuse colour is the base colour |
 //! | `KHR_animation_pointer` | pointers at translation, rotation, scale and weights of nodes |
+//! | `MSFT_lod` on nodes | [`Model::levels_from_file`](crate::asset::Model::levels_from_file) reads all levels, other functions the finest |
 //!
 //! | refused | where |
 //! |---|---|
@@ -68,7 +77,8 @@
 //! | `KHR_lights_punctual`, cameras | |
 //! | `KHR_animation_pointer` with any other target | |
 //! | `KHR_node_visibility` | hidden nodes are read like others |
-//! | `MSFT_lod` | the finest level is read |
+//! | `MSFT_lod` on materials | the finest is read: levels are chosen by the error of their surface, which materials do not change |
+//! | `MSFT_screencoverage` | errors of levels are measured instead |
 //! | `EXT_mesh_features`, `EXT_structural_metadata`, and others that add data to meshes | |
 //!
 //! [`Model::from_file_bare`](crate::asset::Model::from_file_bare) ignores extensions that concern materials and images.
@@ -95,6 +105,7 @@ mod draco;
 mod extensions;
 mod faults;
 mod json;
+mod levels;
 pub(super) mod materials;
 mod meshes;
 mod meshopt;
@@ -111,6 +122,7 @@ use std::path::Path;
 use super::model::Model;
 use crate::InputError;
 use document::Document;
+use levels::Lods;
 use materials::Materials;
 
 /// Callback that reads a file. It receives the file's path relative to the folder of the imported file.
@@ -149,10 +161,30 @@ impl Model {
         mut materials: Materials,
     ) -> Result<Self, InputError> {
         let document = Document::new(bytes, beside, materials.is_unread)?;
-        let nodes = nodes::Nodes::new(&document)?;
-        let clips = clips::clips(&document, &nodes)?;
-        let meshes = meshes::meshes(&document, &nodes, &mut materials)?;
-        let Materials { materials, images, .. } = materials;
+        Self::of_document(&document, &mut materials)
+    }
+
+    /// Reads all levels of detail (`MSFT_lod`) like [`Model::from_gltf_beside`], the finest first.
+    pub(super) fn levels_from_gltf_beside(bytes: &[u8], beside: Beside<'_>) -> Result<Vec<Self>, InputError> {
+        let mut all = Vec::new();
+        loop {
+            // Each level has a budget of its own.
+            let mut document = Document::new(bytes, Some(beside), false)?;
+            let lods = Lods::new(&document)?;
+            let levels = lods.levels(&document.root);
+            lods.choose(&mut document.root, all.len());
+            all.push(Self::of_document(&document, &mut Materials::default())?);
+            if all.len() == levels {
+                return Ok(all);
+            }
+        }
+    }
+
+    fn of_document(document: &Document<'_>, materials: &mut Materials) -> Result<Self, InputError> {
+        let nodes = nodes::Nodes::new(document)?;
+        let clips = clips::clips(document, &nodes)?;
+        let meshes = meshes::meshes(document, &nodes, materials)?;
+        let Materials { materials, images, .. } = std::mem::take(materials);
         let own = nodes.own_skins();
         let skinned = meshes.iter().take_while(|mesh| mesh.skin < own).count();
         Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes, skinned, materials, images })

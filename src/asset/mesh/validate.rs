@@ -57,15 +57,21 @@ impl Mesh {
                 let bound = format!("must be finite, and at least {least}, which the level before has");
                 return Err(InputError::new(format!("{path}.error"), level.error, bound));
             }
-            if level.indices.is_empty() {
-                return Err(InputError::new(format!("{path}.indices.len"), 0, "must be at least 3"));
-            }
             check_triangles(&format!("{path}.indices"), &level.indices, self.vertices())?;
+            least = level.error;
+            // Only vertices that move into others must be vertices of the level before.
+            if self.partners.is_empty() {
+                continue;
+            }
+            if level.indices.is_empty() {
+                let bound = "must be at least 3 in a mesh with partners";
+                return Err(InputError::new(format!("{path}.indices.len"), 0, bound));
+            }
             if let Some(at) = level.indices.iter().position(|vertex| !finer[*vertex as usize]) {
-                let bound = "must be a vertex of the level before";
+                let bound = "must be a vertex of the level before in a mesh with partners";
                 return Err(InputError::new(format!("{path}.indices[{at}]"), level.indices[at], bound));
             }
-            (least, finer) = (level.error, self.used(&level.indices));
+            finer = self.used(&level.indices);
         }
         Ok(())
     }
@@ -200,17 +206,20 @@ mod tests {
         }
     }
 
+    /// Without partners, a level may be empty, and use vertices that the level before does not use.
     #[test]
     fn levels_are_nested_and_coarser_and_coarser() {
         // Level 0 has two triangles; the other levels have the given triangles and errors.
-        let levelled = |levels: &[(&[u32], f32)]| {
+        let with_partners = |partners: &[u32], levels: &[(&[u32], f32)]| {
             let (mut mesh, skins) = triangle();
+            mesh.partners = partners.to_vec();
             mesh.indices = vec![0, 1, 2, 2, 1, 0];
             let level =
                 |(indices, error): &(&[u32], f32)| MeshLevel { indices: indices.to_vec(), error: *error };
             mesh.levels = levels.iter().map(level).collect();
             mesh.validate(&skins).map_err(|error| error.path)
         };
+        let levelled = |levels: &[(&[u32], f32)]| with_partners(&[], levels);
         let (one, none): (&[u32], &[u32]) = (&[0, 1, 2], &[]);
         assert_eq!(levelled(&[(one, 0.0), (one, 0.5), (&[1, 1, 1], 0.5)]), Ok(()));
         assert_eq!(levelled(&vec![(one, 1.0); 15]), Ok(()));
@@ -221,9 +230,14 @@ mod tests {
         refused(&[(one, f32::NAN)], "mesh.levels[0].error");
         refused(&[(one, f32::INFINITY)], "mesh.levels[0].error");
         refused(&[(one, 1.0), (one, 0.5)], "mesh.levels[1].error");
-        refused(&[(one, 1.0), (none, 1.0)], "mesh.levels[1].indices.len");
         refused(&[(&[0, 1], 1.0)], "mesh.levels[0].indices.len");
         refused(&[(&[0, 1, 3], 1.0)], "mesh.levels[0].indices[2]");
-        refused(&[(&[0, 1, 1], 1.0), (one, 1.0)], "mesh.levels[1].indices[2]");
+        for (levels, field) in [
+            ([(one, 1.0), (none, 1.0)], "mesh.levels[1].indices.len"),
+            ([(&[0, 1, 1][..], 1.0), (one, 1.0)], "mesh.levels[1].indices[2]"),
+        ] {
+            assert_eq!(levelled(&levels), Ok(()));
+            assert_eq!(with_partners(&[0, 1, 2], &levels), Err(field.to_owned()));
+        }
     }
 }

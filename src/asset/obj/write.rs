@@ -111,7 +111,8 @@ impl Model {
     /// mesh's own space. If the model has a skeleton, convert it with [`at_rest`](crate::skinning::at_rest()) first.
     ///
     /// Colours, opacity, textures and normal maps are written. OBJ cannot express skins, clips, morph targets, levels of
-    /// detail, tangents, double-sided triangles, filters, and the threshold of [`Alpha::Mask`]; these are not written.
+    /// detail, tangents, double-sided triangles, filters, and the threshold of [`Alpha::Mask`]; these are not written. Of joined
+    /// levels, the finest is written.
     ///
     /// [`Model::from_obj`] reads the same numbers back. Positions, normals and triangles are equal to the bit. Texture
     /// coordinates are equal to the bit if v is 0 or above 2⁻²⁹, and otherwise within 2⁻⁵³.
@@ -139,6 +140,9 @@ impl Model {
         }
         for (at, mesh) in self.meshes.iter().enumerate() {
             self.check_mesh(at)?;
+            if mesh.is_of_coarse_levels() {
+                continue;
+            }
             writer.object(object(mesh, library.material(mesh))).map_err(failed)?;
         }
         let mut files = vec![(format!("{name}.obj"), text)];

@@ -147,7 +147,7 @@ pub(super) fn drawable(
 ) -> Result<MeshDrawable, Error> {
     let mesh = &merged.model.meshes[index];
     let own: Vec<&Part> = merged.parts.iter().filter(|part| part.mesh == index).collect();
-    let part_of = parts_of_vertices(mesh, &own);
+    let part_of = parts_of_vertices(mesh, &merged.errors, &own);
     let mut tables: Vec<Vec<Option<usize>>> = vec![Vec::new(); own.len()];
     let entries: Vec<u32> = (part_of.iter().zip(&merged.materials[index]))
         .map(|(part, material)| entry(&mut tables[*part], *material))
@@ -202,15 +202,16 @@ pub fn coarsest_levels(mesh: &Mesh, errors: &[f32]) -> Vec<u32> {
     mesh.coarsest_levels().into_iter().map(of_object).collect()
 }
 
-/// For each vertex, the index of the part whose triangles use the vertex.
-fn parts_of_vertices(mesh: &Mesh, parts: &[&Part]) -> Vec<usize> {
+/// For each vertex, the index of the part whose triangles use the vertex at any level. `errors` are the errors of the
+/// object's levels.
+fn parts_of_vertices(mesh: &Mesh, errors: &[f32], parts: &[&Part]) -> Vec<usize> {
+    let own = own_levels(mesh, errors);
     let mut part_of = vec![0; mesh.vertices()];
     for (at, part) in parts.iter().enumerate() {
-        // The first range that is not empty belongs to level 0, which uses all vertices. A piece of a split mesh has
-        // only one range that is not empty.
-        let Some(range) = part.indices.iter().find(|range| !range.is_empty()).cloned() else { continue };
-        for vertex in &mesh.indices[range.start as usize..range.end as usize] {
-            part_of[*vertex as usize] = at;
+        for (level, range) in own.iter().zip(&part.indices) {
+            for vertex in &mesh.triangles(*level)[range.start as usize..range.end as usize] {
+                part_of[*vertex as usize] = at;
+            }
         }
     }
     part_of

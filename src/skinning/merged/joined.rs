@@ -34,7 +34,7 @@ impl Union {
 }
 
 /// Whether morph targets move at least one vertex of a mesh.
-pub(super) fn morphs(mesh: &Mesh) -> bool {
+pub(in crate::ops::skinning) fn morphs(mesh: &Mesh) -> bool {
     mesh.targets.iter().any(|target| !target.vertices.is_empty())
 }
 

@@ -56,8 +56,10 @@ pub(super) struct Sorted {
 }
 
 impl Sorted {
+    /// The sum of the meshes' triangle indices, each mesh at its fullest level.
     fn triangles(&self, model: &Model) -> usize {
-        self.meshes.iter().map(|mesh| model.meshes[*mesh].indices.len()).sum()
+        let most = |mesh: &usize| model.meshes[*mesh].all_triangles().map(<[u32]>::len).max().unwrap_or(0);
+        self.meshes.iter().map(most).sum()
     }
 
     fn is_beside(&self, other: &Self) -> bool {

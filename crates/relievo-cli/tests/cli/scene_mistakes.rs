@@ -202,6 +202,7 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     // What cannot be together.
     ("/meshes/0/instances/1/on", "[1, 1]", "meshes[0].instances[1].on = [1,1]", "beside at"),
     ("/meshes/0/instances/1/lift", "1", "meshes[0].instances[1].lift = 1", "beside at"),
+    ("/meshes/0/levels", r#"["still.glb", "still.glb"]"#, "meshes[0].levels = ", "beside file"),
     ("/terrain", "null", "meshes[0].instances[0].on = [4, 5]", "no terrain"),
     // Files.
     ("/meshes/0/file", r#""gone.glb""#, "meshes[0].file = gone.glb", "cannot be read"),

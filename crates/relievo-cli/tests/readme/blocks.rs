@@ -17,7 +17,7 @@ use relievo::ops::terrain::window::Windows;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
     Camera, CharacterOptions, Criterion, DistanceTo, LevelChoice, LevelOfDetail, ObjectId, Pace, Placement,
-    Quality, Scene, SkeletonTier, TerrainSource, Transition, View,
+    Quality, Scene, SkeletonTier, TerrainSource, Transition, View, join_levels,
 };
 use relievo_samples::creature;
 
@@ -180,6 +180,16 @@ fn characters((mut scene, model): (Scene, Model)) -> Result<(), Error> {
     for skeleton in scene.skeletons(crowd)? {
         println!("{} bones, {} off, {} bytes", skeleton.bones, skeleton.error, skeleton.bytes);
     }
+    // end
+    Ok(())
+}
+
+#[rustfmt::skip]
+fn levels_that_an_artist_made(scene: &mut Scene) -> Result<(), Error> {
+    // begin docs/levels.md
+    let near = Model::from_file("man.glb".as_ref())?;
+    let far = Model::from_file("man_far.glb".as_ref())?;
+    let man = scene.add_character(&join_levels(&[near, far])?, 100)?;
     // end
     Ok(())
 }

@@ -34,6 +34,7 @@ fn items() {
     use relievo::ops::skinning::Extent as _; // ops::skinning::Extent
     use relievo::ops::skinning::FadeRange as _; // ops::skinning::FadeRange
     use relievo::scene::add_levels as _; // scene::add_levels
+    use relievo::scene::join_levels as _; // scene::join_levels
     use relievo::ops::skinning::collapse_bones as _; // ops::skinning::collapse_bones
     use relievo::ops::skinning::frame::SkinFrame as _; // ops::skinning::frame::SkinFrame
     use relievo::ops::skinning::paged::PagedSkin as _; // ops::skinning::paged::PagedSkin
@@ -56,6 +57,7 @@ fn members() {
     let _ = |frame: relievo::ops::animation::Frame| frame.ahead; // Frame::ahead
     let _ = |quality: relievo::scene::Quality| quality.pixels; // Quality::pixels
     let _ = Scene::record; // Scene::record
+    let _ = Model::levels_from_file; // Model::levels_from_file
     let _ = Scene::lod_bias; // Scene::lod_bias
     let _ = Scene::set_statistics; // Scene::set_statistics
     let _ = KindProgram::bind; // KindProgram::bind

@@ -21,16 +21,18 @@ pub(super) struct Group {
 }
 
 /// Groups a model's meshes into nodes. Meshes of a group share a skin and have equal morph weights. Their names follow the
-/// import's pattern for primitives: a common name, followed by numbers from 0.
+/// import's pattern for primitives: a common name, followed by numbers from 0. Meshes of coarser levels are left out.
 pub(super) fn groups(model: &Model) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
-    for (at, mesh) in model.meshes.iter().enumerate() {
+    let finest = model.meshes.iter().enumerate().filter(|(_, mesh)| !mesh.is_of_coarse_levels());
+    for (at, mesh) in finest {
         let is_skinned = at < model.skinned || model.skins[mesh.skin].bones.len() != 1;
         let parts =
             mesh.name.rsplit_once('_').and_then(|(name, number)| Some((name, number.parse::<usize>().ok()?)));
         if let (Some(group), Some((name, number))) = (groups.last_mut(), parts) {
             let first = &model.meshes[group.meshes.start];
-            let is_next = number == group.meshes.len() && number > 0 && name == group.name;
+            let is_next =
+                number == group.meshes.len() && group.meshes.end == at && number > 0 && name == group.name;
             let is_alike = (first.skin, &first.weights) == (mesh.skin, &mesh.weights)
                 && first.weight_keys == mesh.weight_keys
                 && group.is_skinned == is_skinned;

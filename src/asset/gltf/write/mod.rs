@@ -32,7 +32,7 @@ impl Model {
     /// - A clip lasts until its last key. Clips without keys are left out.
     /// - [`Alpha::Blended`](crate::asset::material::Alpha::Blended) is written as `BLEND`, which the import reads as
     ///   [`Alpha::Dithered`](crate::asset::material::Alpha::Dithered).
-    /// - Levels of detail and lights are not written.
+    /// - Levels of detail and lights are not written. Of joined levels, the finest is written.
     ///
     /// Images are PNG. Models have no metallic and roughness factors; these are written as 0 and 1.
     ///

@@ -6,7 +6,8 @@
 //! towards the next coarser level as the view has moved them. Both have
 //! samples: vertices, the middles of edges and those of triangles, as far as they lie inside the view volume, hidden or not.
 //! The partner of a sample is the same vertex if the other surface has it and the vertex is not on its way to another. Otherwise it is the nearest point on the other
-//! surface, among all triangles of the same primitive (which collapses made which triangle is not recorded). The
+//! surface, among all triangles of the same primitive (which collapses made which triangle is not recorded; of joined levels,
+//! among all triangles). The
 //! displacement is the distance between sample and partner in the picture.
 //!
 //! Terrain and reliefs have one level of detail and are not measured.

@@ -28,12 +28,13 @@ pub(super) struct Watched {
     clusters: Vec<Clusters>,
 }
 
-/// A primitive of the model, as a part of a merged mesh.
+/// A primitive of the model, as a part of a merged mesh. In a model that was joined from levels, all primitives of a merged mesh
+/// count as one, since each level has primitives of its own.
 pub(super) struct Primitive {
     /// Index of the merged mesh.
     pub mesh: usize,
-    /// Index of the model's own mesh.
-    source: u32,
+    /// Index of the model's own mesh; `None` for all that are merged.
+    source: Option<u32>,
     /// All of its triangles.
     pub full: Surface,
     /// For each list of the object, the triangles that its instances are drawn with, once they are known.
@@ -79,7 +80,7 @@ impl Watched {
         for Primitive { mesh, source, lists, .. } in &mut self.primitives {
             let (order, sources) = (&self.clusters[*mesh].order, &self.merged.sources[*mesh]);
             let all = drawn[*mesh].iter().map(|slots| slots.map(|slot| order[slot as usize]));
-            let own = all.filter(|corners| sources[corners[0] as usize] == *source);
+            let own = all.filter(|corners| is_of(*source, sources[corners[0] as usize]));
             lists[list as usize] = Some(Surface::new(own.collect()));
         }
         Ok(())
@@ -167,13 +168,23 @@ fn precise(positions: &[[f32; 3]]) -> Vec<DVec3> {
     positions.iter().map(|position| glam::Vec3::from(*position).as_dvec3()).collect()
 }
 
+/// Whether a mesh is a primitive's source.
+fn is_of(source: Option<u32>, mesh: u32) -> bool {
+    source.is_none_or(|source| source == mesh)
+}
+
 /// The primitives of a merged mesh.
 fn primitives(merged: &Merged, index: usize) -> Vec<Primitive> {
     let (mesh, sources) = (&merged.model.meshes[index], &merged.sources[index]);
     let all: BTreeSet<u32> = sources.iter().copied().collect();
-    let full = |source: u32| {
+    let fine: BTreeSet<u32> = mesh.indices.iter().map(|vertex| sources[*vertex as usize]).collect();
+    let all: Vec<Option<u32>> = match all == fine {
+        true => all.into_iter().map(Some).collect(),
+        false => vec![None],
+    };
+    let full = |source: Option<u32>| {
         let all = mesh.indices.as_chunks::<3>().0.iter();
-        Surface::new(all.filter(|corners| sources[corners[0] as usize] == source).copied().collect())
+        Surface::new(all.filter(|corners| is_of(source, sources[corners[0] as usize])).copied().collect())
     };
     let none = || (0..OBJECT_LISTS).map(|_| None).collect();
     let primitive = |source| Primitive { mesh: index, source, full: full(source), lists: none() };
