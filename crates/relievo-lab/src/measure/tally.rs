@@ -1,4 +1,4 @@
-//! A histogram of many values, for their root mean square, a percentile and the largest value.
+//! A histogram of many values, for their root mean square, a percentile and the largest value; and the median of few.
 
 /// Number of low bits of an `f32` that do not count for its bin: there are 64 bins per octave.
 const BIN_SHIFT: u32 = 17;
@@ -49,6 +49,12 @@ impl Tally {
         }
         0.0
     }
+}
+
+/// The median of values; `None` without values.
+pub(crate) fn middle(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 #[cfg(test)]
