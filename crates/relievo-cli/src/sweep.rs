@@ -132,8 +132,8 @@ impl Sweep {
         let staged = Staged::new(&self.out)?;
         let start = Instant::now();
         let clock = || start.elapsed().as_secs_f64();
-        let measure = |listener| gpu.block_on(distance_sweep(&gpu, subject, &options, &clock, listener));
-        let report = shown(measure)?;
+        let report =
+            shown(|listener| gpu.block_on(distance_sweep(&gpu, subject, &options, &clock, listener)))?;
         publish(staged, &options, &report)?;
         say(format_args!("{}\n{}", table(&report), summary(&report).trim_end()))
     }

@@ -19,7 +19,7 @@ const THESIS: [f64; 2] = [12.0, 43.6];
 /// The range for which A reports, in units.
 const THESIS_RANGE: [f32; 2] = [200.0, 1700.0];
 
-/// The smallest error in pixels that the plot shows; smaller ones are rounding.
+/// The smallest error in pixels that the plot shows. Smaller ones are rounding and count as 0, which is drawn hollow at the bottom.
 const LEAST_ERROR: f64 = 1e-3;
 
 /// The name of each plot's file, and the plot.
@@ -43,9 +43,9 @@ pub fn pictures(
         chart(layout, "", "interpolations a frame", modes(layout, &|row| Some(row.interpolated)))
     });
     pictures.push((work, grid(&title("Bones interpolated"), &interpolations, 2, ROW)?));
-    let mut errors = charts(&|layout| errors(report, layout, "largest", |row| row.error.max_pixels));
-    errors.extend(charts(&|layout| errors(report, layout, "rms", |row| row.error.rms_pixels)));
-    pictures.push((error, grid(&title("Error on screen"), &errors, 2, (ROW.0, 2 * ROW.1))?));
+    let mut panels = charts(&|layout| errors(report, layout, "largest error", |row| row.error.max_pixels));
+    panels.extend(charts(&|layout| errors(report, layout, "rms error", |row| row.error.rms_pixels)));
+    pictures.push((error, grid(&title("Error on screen"), &panels, 2, (ROW.0, 2 * ROW.1))?));
     Ok(pictures)
 }
 
@@ -85,12 +85,12 @@ fn name(mode: GateName) -> &'static str {
 fn updates(options: &DistanceSweepOptions, layout: &SweepLayout) -> Chart {
     let mut series = modes(layout, &|row| Some(row.update_rate));
     series.extend(thesis(options, layout.layout));
-    Chart { log_y: true, ..chart(layout, "", "updates a second", series) }
+    Chart { log_y: true, ..chart(layout, "", "updates a second (A: frames)", series) }
 }
 
 /// What A reports for a layout: only the stretches for which it gives a number.
 fn thesis(options: &DistanceSweepOptions, layout: GroupLayout) -> Vec<Series> {
-    let [without, with] = ["thesis A, 12/s without LOD", "thesis A, with LOD: 12/s, in the end 43.6/s"];
+    let [without, with] = ["thesis A without LOD: 12", "thesis A with LOD: 12, in the end 43.6"];
     let all = || options.distances.iter().copied();
     let [first, last] = [all().fold(f32::INFINITY, f32::min), all().fold(0.0, f32::max)];
     if [options.range.min, options.range.max] != THESIS_RANGE {
@@ -116,11 +116,10 @@ fn errors(
     what: &str,
     of: impl Fn(&SweepRow) -> f64,
 ) -> Chart {
-    let shown = |row: &SweepRow| Some(of(row)).filter(|error| *error >= LEAST_ERROR);
+    let shown = |row: &SweepRow| Some(of(row)).map(|error| if error >= LEAST_ERROR { error } else { 0.0 });
     let mut series = modes(layout, &shown);
-    series.retain(|series| series.name != name(GateName::Off));
     let ends = [layout.rows.first(), layout.rows.last()];
     let ends = ends.into_iter().flatten().map(|row| (f64::from(row.distance), f64::from(report.pixels)));
-    series.push(Series::new("the bound of bounded", ends.collect()));
+    series.push(Series::new(format!("{} px, the bound of bounded", report.pixels), ends.collect()));
     Chart { log_y: true, ..chart(layout, what, "pixels", series) }
 }

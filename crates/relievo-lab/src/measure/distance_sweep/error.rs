@@ -99,7 +99,7 @@ mod tests {
     /// A point 10 units before a camera that is 30 units from the origin moves to the right, and ahead.
     #[test]
     fn errors_are_projected_from_where_the_camera_stands() {
-        let model = Model::default();
+        let model = relievo_samples::creature().expect("built in");
         let focal = 540.0 * 3.0_f64.sqrt();
         let at = |x: f64, z: f64| DAffine3::from_translation(DVec3::new(x, 0.0, z));
         let found = |stale: DAffine3, fresh: DAffine3| {

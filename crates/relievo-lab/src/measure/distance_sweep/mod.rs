@@ -120,6 +120,8 @@ pub async fn distance_sweep(
         pixels: options.pixels,
         rate: options.rate,
         frames: options.frames,
+        error_frames: options.error_frames,
+        measured: options.measured,
         drawn_frames: options.drawn_frames,
         picture: PICTURE,
         layouts,

@@ -50,6 +50,10 @@ pub struct DistanceSweepReport {
     pub rate: f64,
     /// Number of frames of a row that were timed and counted.
     pub frames: u32,
+    /// Number of frames of a row whose errors were measured.
+    pub error_frames: u32,
+    /// Largest number of visible instances whose errors were measured in a frame.
+    pub measured: usize,
     /// Number of frames of a row that were drawn and timed as a whole; 0 if nothing was drawn.
     pub drawn_frames: u32,
     /// Width and height of the picture in pixels.
