@@ -35,8 +35,10 @@ pub fn pictures(
     let updates = charts(&|layout| updates(options, layout));
     pictures.push((rate, grid(&title("Updates of bones a second"), &updates, 2, ROW)?));
     if report.drawn_frames > 0 {
-        let frames =
-            charts(&|layout| chart(layout, "", "frames a second", modes(layout, &|row| row.frame_rate)));
+        let frames = charts(&|layout| Chart {
+            log_y: true,
+            ..chart(layout, "", "frames a second", modes(layout, &|row| row.frame_rate))
+        });
         pictures.push((whole, grid(&title("Whole frames a second"), &frames, 2, ROW)?));
     }
     let interpolations = charts(&|layout| {

@@ -15,7 +15,7 @@ use crate::measure::distance_sweep::place::{Group, camera};
 use crate::measure::distance_sweep::report::SweepRow;
 use crate::measure::gates::GateName;
 use crate::measure::options::{PICTURE, SKY};
-use crate::measure::tally::middle;
+use crate::measure::tally::lower_quartile;
 
 /// Number of frames after the camera has moved that are not measured: instances that come into view are updated in full.
 const SETTLING: u32 = 2;
@@ -112,12 +112,12 @@ impl<'a> Look<'a> {
         let timed = self.timed(group).await?;
         let error = self.errors(group, distance).await?;
         let frame_milliseconds = self.drawn(group).await?;
-        let median = |values: Vec<f64>| middle(values).unwrap_or(0.0);
-        let record_milliseconds = median(timed.record);
-        let stages = median_stages(&timed.stages);
+        let usual = |values: Vec<f64>| lower_quartile(values).unwrap_or(0.0);
+        let record_milliseconds = usual(timed.record);
+        let stages = usual_stages(&timed.stages);
         let update_milliseconds = match stages {
             Some(times) => record_milliseconds + times.gate + times.sample + times.local_to_model,
-            None => median(timed.whole),
+            None => usual(timed.whole),
         };
         let DistanceSweepOptions { frames, .. } = *group.options;
         let moving = u64::from(timed.visible) * group.animated_bones as u64 * u64::from(frames);
@@ -196,13 +196,13 @@ impl<'a> Look<'a> {
         Ok(errors.finish())
     }
 
-    /// The median time of whole frames in milliseconds; `None` if nothing is to be drawn.
+    /// The time of whole frames in milliseconds; `None` if nothing is to be drawn.
     async fn drawn(&mut self, group: &Group<'_>) -> Result<Option<f64>, Error> {
         let mut times = Vec::new();
         for _ in 0..group.options.drawn_frames {
             times.push(self.frame(group, true).await?.whole);
         }
-        Ok(middle(times))
+        Ok(lower_quartile(times))
     }
 
     /// Plays the next frame, and waits until the device has finished.
@@ -268,15 +268,15 @@ fn bone_name(group: &Group<'_>, bone: usize) -> String {
     if is_taken { bones[bone].name.clone() } else { index }
 }
 
-/// Medians of the stages' times; `None` without times.
-fn median_stages(all: &[StageTimes]) -> Option<StageTimes> {
-    let median = |of: fn(&StageTimes) -> f64| middle(all.iter().map(of).collect());
+/// Lower quartiles of the stages' times; `None` without times.
+fn usual_stages(all: &[StageTimes]) -> Option<StageTimes> {
+    let usual = |of: fn(&StageTimes) -> f64| lower_quartile(all.iter().map(of).collect());
     Some(StageTimes {
         frame: all.last()?.frame,
-        select: median(|times| times.select)?,
-        gate: median(|times| times.gate)?,
-        sample: median(|times| times.sample)?,
-        local_to_model: median(|times| times.local_to_model)?,
-        skin: median(|times| times.skin)?,
+        select: usual(|times| times.select)?,
+        gate: usual(|times| times.gate)?,
+        sample: usual(|times| times.sample)?,
+        local_to_model: usual(|times| times.local_to_model)?,
+        skin: usual(|times| times.skin)?,
     })
 }

@@ -72,7 +72,7 @@ pub struct SweepLayout {
     pub rows: Vec<SweepRow>,
 }
 
-/// One mode at one distance. Times are medians over frames.
+/// One mode at one distance. Times are lower quartiles over frames, because other programs on the machine only lengthen them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SweepRow {
     /// Distance in units from the camera to the group's centre.

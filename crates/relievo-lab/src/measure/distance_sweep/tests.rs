@@ -9,7 +9,7 @@ use crate::measure::gates::GateName;
 const DISTANCES: [f32; 3] = [100.0, 900.0, 2400.0];
 
 /// The largest error in pixels that rounding causes: the device and the host pose bones in another order of operations.
-const ROUNDING: f64 = 0.02;
+const ROUNDING: f64 = 0.005;
 
 fn small() -> DistanceSweepOptions {
     DistanceSweepOptions {
