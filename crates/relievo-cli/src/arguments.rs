@@ -84,6 +84,12 @@ pub fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
     PossibleValuesParser::new(values.map(|(name, _)| name)).try_map(find)
 }
 
+/// Parses one of a list of distances.
+pub fn distance(text: &str) -> Result<f32, InputError> {
+    let refused = |_| InputError::new("distance", text, "must be numbers with commas between them");
+    text.trim().parse().map_err(refused)
+}
+
 /// Makes a clap parser of two values with a separator between them; `bound` says what they must be.
 pub fn pair<T: FromStr>(
     field: &'static str,

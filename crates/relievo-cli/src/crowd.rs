@@ -13,9 +13,10 @@ use relievo::{Error, InputError};
 use relievo_lab::measure::{GateName, Layout};
 
 use crate::Context;
-use crate::arguments::{Backend, ModelArgs, one_of, pair};
+use crate::arguments::{Backend, ModelArgs, distance, one_of, pair};
 use crate::demo::Shown;
 use plan::Plan;
+pub use report::clock;
 
 const LAYOUTS: [(&str, Layout); 2] = [("grid", Layout::Grid), ("random", Layout::Random)];
 
@@ -109,7 +110,7 @@ pub struct Crowd {
           value_parser = pair::<f32>("range", ',', "must be two distances, such as 200,1700"))]
     range: [f32; 2],
     /// Distances in units from the camera to the nearest instance. Default: seven, spread over --range.
-    #[arg(long, value_name = "D[,D…]", allow_hyphen_values = true, value_delimiter = ',', value_parser = number)]
+    #[arg(long, value_name = "D[,D…]", allow_hyphen_values = true, value_delimiter = ',', value_parser = distance)]
     distance: Vec<f32>,
     /// Number of units in the model's largest extent: with 180, the units of a person are centimetres.
     #[arg(long, value_name = "UNITS", default_value_t = 180.0, allow_hyphen_values = true)]
@@ -150,11 +151,6 @@ pub struct Crowd {
     /// The folder to write to.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-}
-
-fn number(text: &str) -> Result<f32, InputError> {
-    let refused = |_| InputError::new("distance", text, "must be numbers with commas between them");
-    text.trim().parse().map_err(refused)
 }
 
 impl Crowd {

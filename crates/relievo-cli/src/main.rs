@@ -18,6 +18,7 @@ mod scene;
 mod shaders;
 mod simplify;
 mod skin;
+mod sweep;
 mod terrain;
 mod verify;
 
@@ -56,6 +57,7 @@ enum Command {
     Skin(skin::Skin),
     Simplify(Box<simplify::Simplify>),
     Crowd(Box<crowd::Crowd>),
+    Sweep(Box<sweep::Sweep>),
     Verify(verify::Verify),
     Bench(bench::Bench),
     Shaders(shaders::Shaders),
@@ -99,6 +101,7 @@ fn main() -> ExitCode {
         Command::Skin(command) => command.run(&context),
         Command::Simplify(command) => command.run(&context),
         Command::Crowd(command) => command.run(&context),
+        Command::Sweep(command) => command.run(&context),
         Command::Bench(command) => command.run(&context),
         Command::Shaders(command) => command.run(),
         Command::Demo(command) => command.run(&context),

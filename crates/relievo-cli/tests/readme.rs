@@ -198,7 +198,7 @@ fn commands_in_help_texts_exist() {
 /// Options that stand alone, as in "`--scene` times …", are those of one of these commands or of all.
 #[test]
 fn options_that_are_named_exist() {
-    let commands = ["crowd", "scene", "terrain", "simplify"];
+    let commands = ["crowd", "sweep", "scene", "terrain", "simplify"];
     let help: String = commands.map(|name| relievo(&[name, "--help"]).stdout).concat();
     let options: Vec<_> = DOCUMENTS.iter().flat_map(Document::quoted).collect();
     for option in options.iter().filter(|text| text.starts_with("--")) {

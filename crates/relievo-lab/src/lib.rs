@@ -9,7 +9,8 @@
 //! charts. [`crowd`] advances gated crowds without a device. [`portrait`] draws models, on the host and by a scene. [`reduce`] has every reducer behind one interface, and [`distance`](mod@distance) measures how far meshes are
 //! apart.
 //!
-//! On `wasm32` there are the parity cases ([`verify::run_async`]) and reducers: the rest waits for the device, or draws.
+//! On `wasm32` there are the parity cases ([`verify::run_async`]), [`distance_sweep`](measure::distance_sweep()) and reducers: the
+//! rest waits for the device, or draws plots.
 
 #![cfg_attr(
     target_arch = "wasm32",
@@ -25,7 +26,6 @@ pub mod distance;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod files;
 pub mod harness;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod measure;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod plot;

@@ -20,6 +20,7 @@ mod scene_levels;
 mod scene_mistakes;
 mod simplify;
 mod skin;
+mod sweep;
 mod terrain;
 
 use serde_json::json;
@@ -35,7 +36,7 @@ fn assert_refused(run: &harness::Run, arguments: &[&str], words: &[&str]) {
     assert!(run.stdout.is_empty(), "{arguments:?}: {}", run.stdout);
 }
 
-/// Checks that `docs/reports.md` names every field of a report of `relievo crowd`.
+/// Checks that `docs/reports.md` names every field of a report of `relievo crowd` or `relievo sweep`.
 fn assert_documented(report: &serde_json::Value) {
     match report {
         serde_json::Value::Object(fields) => {

@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use crate::measure::displacement::{Displacement, DisplacementMeter};
 use crate::measure::flip::mean_flip;
-use crate::measure::play::middle;
 use crate::measure::player::{FrameTimes, Player, Rendering};
+use crate::measure::tally::middle;
 
 /// An object of a scene, as reports name it.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,6 +8,7 @@
 //! | [`drawn`] | the same, and the crowd as a scene draws it, within some pixels and in full detail: whole frames, displacements | GPU |
 //! | [`scene()`] | whole frames of a scene without level of detail; with it in animation, in skinning (A section 8.4), and in both; and in the meshes too | GPU |
 //! | [`pareto()`] | every gate at many settings: errors against the number of bones interpolated, and the gates' curves with each other | CPU |
+//! | [`distance_sweep()`] | the test of A section 13 by scenes: frame rates, interpolations and errors of four modes while the camera moves away | GPU, browsers too |
 //! | [`reduction::reduction`] | a model with its levels of detail by some reducer: distances between their surfaces, both ways | CPU |
 //! | [`reduction::ReducerComparison`] | all reducers beside each other | CPU |
 //!
@@ -48,44 +49,83 @@
 //! # Ok::<(), relievo::Error>(())
 //! ```
 
-pub use animation::{AnimationReport, AnimationRow, DrawnRow, animation, drawn};
-pub use displacement::{Displacement, DisplacementMeter};
-pub use drawing::FrameCost;
-pub use dump::CharacterDump;
-pub use errors::{Errors, Jump};
-pub use flip::mean_flip;
-pub use frames::{Compared, DrawnLevel, FrameReport, FrameSummary, ObjectFrame, ObjectReport, ScenePlay};
+pub use distance_sweep::{
+    Clock, DistanceSweepOptions, DistanceSweepReport, GroupLayout, SWEEP_MODES, SweepError, SweepLayout,
+    SweepRow, distance_sweep,
+};
 pub use gates::{GateMode, GateName};
-pub use levels::LevelReport;
 pub use options::{CrowdOptions, Detail, DrawnOptions, Layout, LodOptions, ParetoOptions, Subject};
-pub use pareto::{AtCost, AtError, Comparisons, ParetoPoint, ParetoReport, pareto};
-pub use play::StageTimes;
-pub use player::{FrameTimes, Player, Rendering, SurfacePixel};
 pub use progress::{Listener, Progress};
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use animation::{AnimationReport, AnimationRow, DrawnRow, animation, drawn};
+#[cfg(not(target_arch = "wasm32"))]
+pub use displacement::{Displacement, DisplacementMeter};
+#[cfg(not(target_arch = "wasm32"))]
+pub use drawing::FrameCost;
+#[cfg(not(target_arch = "wasm32"))]
+pub use dump::CharacterDump;
+#[cfg(not(target_arch = "wasm32"))]
+pub use errors::{Errors, Jump};
+#[cfg(not(target_arch = "wasm32"))]
+pub use flip::mean_flip;
+#[cfg(not(target_arch = "wasm32"))]
+pub use frames::{Compared, DrawnLevel, FrameReport, FrameSummary, ObjectFrame, ObjectReport, ScenePlay};
+#[cfg(not(target_arch = "wasm32"))]
+pub use levels::LevelReport;
+#[cfg(not(target_arch = "wasm32"))]
+pub use pareto::{AtCost, AtError, Comparisons, ParetoPoint, ParetoReport, pareto};
+#[cfg(not(target_arch = "wasm32"))]
+pub use play::StageTimes;
+#[cfg(not(target_arch = "wasm32"))]
+pub use player::{FrameTimes, Player, Rendering, SurfacePixel};
+#[cfg(not(target_arch = "wasm32"))]
 pub use scene::{Cheaper, SceneReport, SceneRow, scene};
+#[cfg(not(target_arch = "wasm32"))]
 pub use setting::Setting;
 
-mod animation;
 mod bounds;
-mod cpu;
-mod device;
-mod displacement;
-mod drawing;
-mod dump;
-mod errors;
-mod flip;
-mod frames;
+pub mod distance_sweep;
+mod extent;
 mod gates;
-mod levels;
 mod options;
-mod pareto;
 mod placement;
-mod play;
-mod player;
 mod progress;
-pub mod reduction;
-pub mod relief;
-mod scene;
-mod setting;
-mod stage;
 mod tally;
+
+#[cfg(not(target_arch = "wasm32"))]
+mod animation;
+#[cfg(not(target_arch = "wasm32"))]
+mod cpu;
+#[cfg(not(target_arch = "wasm32"))]
+mod device;
+#[cfg(not(target_arch = "wasm32"))]
+mod displacement;
+#[cfg(not(target_arch = "wasm32"))]
+mod drawing;
+#[cfg(not(target_arch = "wasm32"))]
+mod dump;
+#[cfg(not(target_arch = "wasm32"))]
+mod errors;
+#[cfg(not(target_arch = "wasm32"))]
+mod flip;
+#[cfg(not(target_arch = "wasm32"))]
+mod frames;
+#[cfg(not(target_arch = "wasm32"))]
+mod levels;
+#[cfg(not(target_arch = "wasm32"))]
+mod pareto;
+#[cfg(not(target_arch = "wasm32"))]
+mod play;
+#[cfg(not(target_arch = "wasm32"))]
+mod player;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod reduction;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod relief;
+#[cfg(not(target_arch = "wasm32"))]
+mod scene;
+#[cfg(not(target_arch = "wasm32"))]
+mod setting;
+#[cfg(not(target_arch = "wasm32"))]
+mod stage;

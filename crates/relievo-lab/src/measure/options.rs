@@ -10,6 +10,18 @@ use serde::{Serialize, Serializer};
 use crate::measure::bounds::check;
 use crate::measure::gates::GateMode;
 
+/// Height of the picture, in pixels.
+pub(crate) const LINES: u32 = 1080;
+
+/// Width and height of the picture, in pixels.
+pub(crate) const PICTURE: [u32; 2] = [LINES * 16 / 9, LINES];
+
+/// The vertical field of view, in radians.
+pub(crate) const FIELD_OF_VIEW: f32 = std::f32::consts::FRAC_PI_3;
+
+/// Colour of the background, in linear light.
+pub(crate) const SKY: [f32; 3] = [0.02, 0.025, 0.03];
+
 /// Distance of the near plane, in units.
 pub(crate) const NEAR: f32 = 1.0;
 
@@ -36,6 +48,18 @@ impl<'a> Subject<'a> {
         let clips = &self.model.clips;
         let bound = || format!("must be below {}, as many clips as the model has", clips.len());
         clips.get(self.clip).ok_or_else(|| InputError::new("subject.clip", self.clip, bound()))
+    }
+
+    /// A copy of the model that has this clip alone, with index 0.
+    pub(crate) fn with_one_clip(&self) -> Result<Model, InputError> {
+        let clip = self.clip()?.clone();
+        let mut model = self.model.clone();
+        model.clips = vec![clip];
+        for mesh in &mut model.meshes {
+            mesh.weight_keys.retain(|(of, _)| *of == self.clip);
+            mesh.weight_keys.iter_mut().for_each(|(of, _)| *of = 0);
+        }
+        Ok(model)
     }
 }
 

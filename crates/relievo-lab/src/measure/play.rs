@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::measure::errors::{Errors, Jump, Meter};
 use crate::measure::placement::Placements;
 use crate::measure::stage::Stage;
+use crate::measure::tally::middle;
 
 /// Largest number of frames of a run that are timed.
 const TIMED: u32 = 40;
@@ -123,10 +124,4 @@ pub(crate) fn play(
         StageTimes { gate, sample, local_to_model, total: whole.unwrap_or_else(sum) }
     };
     Ok(Found { interpolated, concatenated, errors, jump, times: [0, 1].map(medians) })
-}
-
-/// The median of the times; `None` without times.
-pub(crate) fn middle(mut times: Vec<f64>) -> Option<f64> {
-    times.sort_by(f64::total_cmp);
-    times.get(times.len() / 2).copied()
 }

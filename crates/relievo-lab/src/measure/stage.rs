@@ -1,9 +1,8 @@
 //! A crowd before a camera, with the tables that all gates need.
 
 use relievo::InputError;
-use relievo::asset::{Affine, Clip, bone_radii};
+use relievo::asset::{Clip, bone_radii};
 use relievo::ops::animation::instance::{Instance, Wrap};
-use relievo::ops::animation::local_to_model::reference::local_to_model;
 use relievo::ops::animation::lod::OMEGA_ONE;
 use relievo::ops::animation::order::Order;
 use relievo::ops::animation::priority::{Priorities, USER_DEFAULT};
@@ -11,15 +10,10 @@ use relievo::ops::animation::{
     AnimatedBones, BoundTable, ClipSet, ExpectationTable, Gate, Lod, PriorityTable, Projection,
 };
 
+use crate::measure::extent::Extent;
 use crate::measure::gates::{GateMode, PATH, TICKS};
-use crate::measure::options::{CrowdOptions, NEAR, Subject};
+use crate::measure::options::{CrowdOptions, FIELD_OF_VIEW, LINES, NEAR, Subject};
 use crate::measure::placement::{Placements, chance};
-
-/// Height of the picture, in pixels.
-pub(crate) const LINES: u32 = 1080;
-
-/// The vertical field of view, in radians.
-pub(crate) const FIELD_OF_VIEW: f32 = std::f32::consts::FRAC_PI_3;
 
 /// A crowd, its clip, and the tables that all gates need.
 pub(crate) struct Stage<'a> {
@@ -50,13 +44,8 @@ impl<'a> Stage<'a> {
         let (clip, skeleton) = (subject.clip()?, &subject.model.skeleton);
         let set = ClipSet::new(&[clip])?;
         let lengths = skeleton.lengths();
-        let [low, high] = corners(&local_to_model(skeleton, &skeleton.rest()), &lengths);
-        let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-        if !(extent > 0.0 && extent.is_finite()) {
-            let bound = "must be finite and above 0: the model at rest is a point";
-            return Err(InputError::new("model.extent", extent, bound));
-        }
-        let metres_a_unit = (extent / f64::from(options.size)) as f32;
+        let Extent { largest, middle } = Extent::new(skeleton)?;
+        let metres_a_unit = (largest / f64::from(options.size)) as f32;
         let starts = (0..options.instances as u32).map(|at| clip.duration() * chance(options.seed, at, 0));
         // Rounded up, so that the radius reaches all the points.
         let radii: Vec<f32> = lengths.iter().map(|length| (*length as f32).next_up()).collect();
@@ -71,7 +60,7 @@ impl<'a> Stage<'a> {
             instances: starts.map(|start| Instance::new(0, Wrap::Loop, start, 1.0)).collect(),
             metres_a_unit,
             projection: Projection::new(LINES, FIELD_OF_VIEW, NEAR * metres_a_unit),
-            middle: ((low[1] + high[1]) / 2.0) as f32,
+            middle: middle as f32,
             subject,
             clip,
             options,
@@ -148,18 +137,4 @@ pub(crate) fn mean_omega(lods: &[Lod]) -> f64 {
 /// Number of bones of an instance that its clip moves.
 pub(crate) fn animated_bones(gate: &Gate) -> usize {
     gate.animated_bones().count(0)
-}
-
-/// The corners of a box around all bones, each taken as a sphere around its origin.
-fn corners(models: &[Affine], lengths: &[f64]) -> [[f64; 3]; 2] {
-    let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for (model, length) in models.iter().zip(lengths) {
-        for (axis, row) in model.iter().enumerate() {
-            let extent = length * f64::from(row[0].hypot(row[1]).hypot(row[2]));
-            // The direction of a bone is unknown: the sphere around its origin has half its length as radius.
-            corners[0][axis] = corners[0][axis].min(f64::from(row[3]) - extent / 2.0);
-            corners[1][axis] = corners[1][axis].max(f64::from(row[3]) + extent / 2.0);
-        }
-    }
-    corners
 }

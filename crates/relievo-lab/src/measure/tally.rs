@@ -1,4 +1,4 @@
-//! A histogram of many values, for their root mean square, a percentile and the largest value.
+//! A histogram of many values, for their root mean square, a percentile and the largest value; and the median and lower quartile of few.
 
 /// Number of low bits of an `f32` that do not count for its bin: there are 64 bins per octave.
 const BIN_SHIFT: u32 = 17;
@@ -51,6 +51,24 @@ impl Tally {
     }
 }
 
+/// The median of values; `None` without values.
+pub(crate) fn middle(values: Vec<f64>) -> Option<f64> {
+    let half = values.len() / 2;
+    ranked(values, half)
+}
+
+/// The lower quartile of values; `None` without values.
+pub(crate) fn lower_quartile(values: Vec<f64>) -> Option<f64> {
+    let quarter = values.len() / 4;
+    ranked(values, quarter)
+}
+
+/// The value that so many others do not exceed.
+fn ranked(mut values: Vec<f64>, rank: usize) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(rank).copied()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,6 +83,11 @@ mod tests {
         let mut zeros = Tally::new();
         (0..1000).for_each(|_| zeros.add(0.0));
         assert_eq!(zeros.percentile(0.99), 0.0);
+        assert_eq!((middle(vec![3.0, 1.0, 2.0]), middle(Vec::new())), (Some(2.0), None));
+        assert_eq!(
+            (lower_quartile(vec![3.0, 1.0, 2.0, 4.0]), lower_quartile(vec![7.0])),
+            (Some(2.0), Some(7.0))
+        );
         zeros.merge(&tally);
         assert_eq!((zeros.count, zeros.max), (2000, 9.99));
         assert!((zeros.percentile(0.5) - 0.0).abs() < 0.02 && zeros.percentile(0.75) > 4.9);

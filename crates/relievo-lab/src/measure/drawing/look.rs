@@ -13,8 +13,8 @@ use crate::measure::drawing::cost::FrameCost;
 use crate::measure::drawing::parts::Parts;
 use crate::measure::drawing::subject::DrawnModel;
 use crate::measure::frames::DrawnLevel;
-use crate::measure::play::middle;
 use crate::measure::stage::Stage;
+use crate::measure::tally::middle;
 
 /// The most instances whose displacement is measured in a frame.
 const MEASURED: usize = 16;

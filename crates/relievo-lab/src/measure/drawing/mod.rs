@@ -13,9 +13,9 @@ use relievo::{Error, InputError};
 pub(crate) use subject::DrawnModel;
 
 use crate::harness::{TimedBy, Timer};
-use crate::measure::options::CrowdOptions;
+use crate::measure::options::{CrowdOptions, FIELD_OF_VIEW, PICTURE, SKY};
 use crate::measure::placement::Placements;
-use crate::measure::stage::{FIELD_OF_VIEW, LINES, Stage};
+use crate::measure::stage::Stage;
 
 mod cost;
 mod look;
@@ -30,12 +30,6 @@ const PAIRS: u32 = 2;
 
 /// The smallest number of frames: one that is timed as a whole, one in its parts, and a pair that is measured.
 const LEAST_FRAMES: u32 = 4;
-
-/// Colour of the background, in linear light.
-const SKY: [f32; 3] = [0.02, 0.025, 0.03];
-
-/// Width and height of the picture, in pixels.
-const PICTURE: [u32; 2] = [LINES * 16 / 9, LINES];
 
 /// What a frame is played for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

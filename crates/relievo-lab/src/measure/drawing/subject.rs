@@ -32,9 +32,7 @@ impl DrawnModel {
             let bound = "must be at least 1";
             return Err(InputError::new("model.meshes.len", 0, bound));
         }
-        let mut model = subject.model.clone();
-        model.clips = vec![clip.clone()];
-        model.meshes.iter_mut().for_each(|mesh| of_clip(mesh, subject.clip));
+        let mut model = subject.with_one_clip()?;
         clothe(&mut model);
         let poses = poses_of(clip)?;
         if detail == Detail::Full {
@@ -57,12 +55,6 @@ impl DrawnModel {
     pub fn triangles(&self) -> u64 {
         self.model.meshes.iter().map(|mesh| mesh.indices.len() as u64 / 3).sum()
     }
-}
-
-/// Leaves a mesh the morph weights of one clip, which becomes the first.
-fn of_clip(mesh: &mut Mesh, clip: usize) {
-    mesh.weight_keys.retain(|(of, _)| *of == clip);
-    mesh.weight_keys.iter_mut().for_each(|(of, _)| *of = 0);
 }
 
 /// Gives the meshes that lack a material a checkerboard of clay in two colours.
