@@ -36,8 +36,8 @@ use crate::progress::shown;
 ///
 /// Units: --size is the number of units in the largest extent of the model at rest. All other lengths are in these units. The
 /// picture is 1920 × 1080 pixels with a vertical field of view of 60 degrees. Chakra gives neither the spacing of the grid nor
-/// the edge of the cube. With the defaults, the grid's last corners leave the range when the camera is 1434 units from the centre,
-/// and all models when it is 1948 (grid) and 2200 (cube) units away.
+/// the edge of the cube. With the defaults, the grid's last corners leave the range when the camera is 1434 units from the
+/// centre, and all models when it is 1948 (grid) and 2200 (cube) units away.
 ///
 /// The command measures for each layout, distance and mode:
 ///
@@ -50,9 +50,9 @@ use crate::progress::shown;
 ///
 /// Writes DIR/report.json, and plots against distance, the grid beside the cube: frame_rate.png (updates a second),
 /// whole_frame_rate.png (frames a second), interpolations.png and error.png. frame_rate.png also shows what Chakra reports: 12
-/// frames a second without level of detail, and with it 12 up to 200 units in the grid, and 43.6 in the end in both layouts. Chakra
-/// gives no other number: in the grid the rate rises most beyond 1400 to 1500 units; in the cube it is above 12 everywhere, and
-/// falls a little before it rises. docs/reports.md in the repository describes every field of report.json.
+/// frames a second without level of detail; with it 12 up to 200 units in the grid, and 43.6 in the end in both layouts.
+/// Chakra gives no other number. In the grid the rate rises most beyond 1400 to 1500 units. In the cube it is above 12
+/// everywhere, and falls a little before it rises. docs/reports.md in the repository describes every field of report.json.
 ///
 /// relievo sweep --model builtin --clip walk --out sweep
 /// relievo sweep --model builtin --clip walk --distance 0,900,2400 --frames 10 --drawn-frames 0 --out quick

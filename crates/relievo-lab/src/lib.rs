@@ -4,13 +4,13 @@
 //! the same bytes (`relievo bench`). [`OPERATIONS`] lists the cases of both, and [`harness`] has comparators and clocks. Two
 //! kinds of kernels serve this alone: those of [`baseline`] only move bytes, and that of [`shade`] lists the colours of points.
 //!
-//! [`measure`] says what methods cost and which errors they show on the caller's own data: level of detail in crowds of
-//! models, and surface mapping on height maps. [`files`] writes reports and pictures whole or not at all. [`plot`] draws
-//! charts. [`crowd`] advances gated crowds without a device. [`portrait`] draws models, on the host and by a scene. [`reduce`] has every reducer behind one interface, and [`distance`](mod@distance) measures how far meshes are
-//! apart.
+//! [`measure`] says what methods cost and which errors they show on the caller's own data: level of detail in crowds of models,
+//! and surface mapping on height maps. [`files`] writes reports and pictures whole or not at all. [`plot`] draws charts.
+//! [`crowd`] advances gated crowds without a device. [`portrait`] draws models, on the host and by a scene. [`reduce`] has every
+//! reducer behind one interface, and [`distance`](mod@distance) measures how far meshes are apart.
 //!
-//! On `wasm32` there are the parity cases ([`verify::run_async`]), [`distance_sweep`](measure::distance_sweep()) and reducers: the
-//! rest waits for the device, or draws plots.
+//! On `wasm32` there are the parity cases ([`verify::run_async`]), [`distance_sweep`](measure::distance_sweep()) and reducers:
+//! the rest waits for the device, or draws plots.
 
 #![cfg_attr(
     target_arch = "wasm32",

@@ -19,7 +19,8 @@ const THESIS: [f64; 2] = [12.0, 43.6];
 /// The range for which A reports, in units.
 const THESIS_RANGE: [f32; 2] = [200.0, 1700.0];
 
-/// The smallest error in pixels that the plot shows. Smaller ones are rounding and count as 0, which is drawn hollow at the bottom.
+/// The smallest error in pixels that the plot shows. Smaller ones are rounding and count as 0, which is drawn hollow at the
+/// bottom.
 const LEAST_ERROR: f64 = 1e-3;
 
 /// The name of each plot's file, and the plot.

@@ -8,7 +8,7 @@
 //! | [`drawn`] | the same, and the crowd as a scene draws it, within some pixels and in full detail: whole frames, displacements | GPU |
 //! | [`scene()`] | whole frames of a scene without level of detail; with it in animation, in skinning (A section 8.4), and in both; and in the meshes too | GPU |
 //! | [`pareto()`] | every gate at many settings: errors against the number of bones interpolated, and the gates' curves with each other | CPU |
-//! | [`distance_sweep()`] | the test of A section 13 by scenes: frame rates, interpolations and errors of four modes while the camera moves away | GPU, browsers too |
+//! | [`distance_sweep()`] | the test of A section 13 by scenes: frame rates, interpolations and errors of four modes while the camera moves away | GPU; also compiles for browsers |
 //! | [`reduction::reduction`] | a model with its levels of detail by some reducer: distances between their surfaces, both ways | CPU |
 //! | [`reduction::ReducerComparison`] | all reducers beside each other | CPU |
 //!

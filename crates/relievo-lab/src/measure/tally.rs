@@ -1,4 +1,5 @@
-//! A histogram of many values, for their root mean square, a percentile and the largest value; and the median and lower quartile of few.
+//! A histogram of many values, for their root mean square, a percentile and the largest value; and the median and lower quartile
+//! of few.
 
 /// Number of low bits of an `f32` that do not count for its bin: there are 64 bins per octave.
 const BIN_SHIFT: u32 = 17;

@@ -8,8 +8,8 @@ use serde::Serialize;
 use crate::measure::bounds::check;
 use crate::measure::gates::GateName;
 
-/// The modes that a sweep compares, in the order of its rows: no level of detail, A's two methods (sections 10 and 12.10), and the
-/// error bound.
+/// The modes that a sweep compares, in the order of its rows: no level of detail, A's two methods (sections 10 and 12.10), and
+/// the error bound.
 pub const SWEEP_MODES: [GateName; 4] =
     [GateName::Off, GateName::Uniform, GateName::SkipPeriod, GateName::Bounded];
 
@@ -50,17 +50,17 @@ pub struct DistanceSweepOptions {
     /// Number of units in the largest extent of the model at rest, in 0.001..=1e6. Default: 180, so that the units of a person
     /// are centimetres.
     pub size: f32,
-    /// Distance in units between neighbours in the grid, in 0..=1e6. Default: 55. The last row of a 10 × 10 grid is then 248 units
-    /// behind its centre, and its corners pass 1,700 units when the camera is 1,434 units from the centre: between the 1,400 and
-    /// 1,500 that A reports.
+    /// Distance in units between neighbours in the grid, in 0..=1e6. Default: 55. The last row of a 10 × 10 grid is then 248
+    /// units behind its centre, and its corners pass 1,700 units when the camera is 1,434 units from the centre: between the
+    /// 1,400 and 1,500 that A reports.
     pub spacing: f32,
     /// Length in units of an edge of the cube, in 0..=1e6. Default: 1000. Models are then up to 866 units from a camera in
     /// the centre, which is beyond the 200 from which Ω falls, as A describes.
     pub edge: f32,
     /// Distances in units between which Ω falls from 1 to 0. Default: 200 to 1700, as in A.
     pub range: Range,
-    /// For [`GateName::SkipPeriod`]: seconds between two skipped updates at priority 1 and Ω = 1, above 0, at most 65535. Default: 1,
-    /// as in A.
+    /// For [`GateName::SkipPeriod`]: seconds between two skipped updates at priority 1 and Ω = 1, above 0, at most 65535.
+    /// Default: 1, as in A.
     pub period: f32,
     /// For [`GateName::SkipPeriod`]: weights of the six terms of a bone's priority. Default: all 1/6, as in A.
     pub weights: Weights,
@@ -71,9 +71,11 @@ pub struct DistanceSweepOptions {
     pub distances: Vec<f32>,
     /// Number of frames that are timed and counted for each distance and mode, in 1..=10000. Default: 30.
     pub frames: u32,
-    /// Number of frames whose errors are measured for each distance and mode, in 1..=10000. They follow the timed ones. Default: 10.
+    /// Number of frames whose errors are measured for each distance and mode, in 1..=10000. They follow the timed ones. Default:
+    /// 10.
     pub error_frames: u32,
-    /// Number of frames that are drawn and timed as a whole for each distance and mode, in 0..=10000. Default: 5. 0 draws nothing.
+    /// Number of frames that are drawn and timed as a whole for each distance and mode, in 0..=10000. Default: 5. 0 draws
+    /// nothing.
     pub drawn_frames: u32,
     /// Frames per second of the scene's time, in 1..=1000. Default: 60.
     pub rate: f64,
@@ -151,8 +153,8 @@ impl DistanceSweepOptions {
         }
     }
 
-    /// Distance in units from the group's centre to its front, along the camera's way. When the camera is this much further away than
-    /// the range's maximum, Ω is 0 for every model.
+    /// Distance in units from the group's centre to its front, along the camera's way. When the camera is this much further away
+    /// than the range's maximum, Ω is 0 for every model.
     pub fn half_depth(&self, layout: GroupLayout) -> f32 {
         match layout {
             GroupLayout::Grid => 0.5 * self.spacing * (grid(self.instances)[1] - 1) as f32,

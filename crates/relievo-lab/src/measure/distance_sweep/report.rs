@@ -90,13 +90,13 @@ pub struct SweepRow {
     /// The device's time of each stage; missing on a device without timestamps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stages: Option<StageTimes>,
-    /// Time of the bones' update in milliseconds: the recording, and the stages that choose, sample and concatenate bones. On a device
-    /// without timestamps, recording and execution of all compute work, with culling and skinning.
+    /// Time of the bones' update in milliseconds: the recording, and the stages that choose, sample and concatenate bones. On a
+    /// device without timestamps, recording and execution of all compute work, with culling and skinning.
     pub update_milliseconds: f64,
     /// Updates per second: 1000 / [`update_milliseconds`](Self::update_milliseconds).
     pub update_rate: f64,
-    /// Time of a whole frame in milliseconds, from the start of its recording until the device has drawn it; missing if nothing was
-    /// drawn.
+    /// Time of a whole frame in milliseconds, from the start of its recording until the device has drawn it; missing if nothing
+    /// was drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_milliseconds: Option<f64>,
     /// Whole frames per second.

@@ -103,8 +103,8 @@ fn options_out_of_range_are_refused_by_name() {
     assert_eq!(refused(DistanceSweepOptions { distances: vec![0.0, -1.0], ..usual() }), "distances[1]");
 }
 
-/// A's own description of the grid, which the default spacing reproduces: from 1,400 to 1,500 units on, some models are beyond the
-/// range; and all are in the end.
+/// A's own description of the grid, which the default spacing reproduces: from 1,400 to 1,500 units on, some models are beyond
+/// the range; and all are in the end.
 #[test]
 fn the_default_group_leaves_the_range_where_the_thesis_says() {
     let options = DistanceSweepOptions::default();
