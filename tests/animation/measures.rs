@@ -121,8 +121,12 @@ fn the_device_measures_as_the_cpu_does_and_draws() {
     }
     assert!(row.animation.displacement.largest > ROUNDING && row.off.bones > row.animation.bones, "{row:?}");
     assert!(all.triangle_fraction < 1.0 && row.both.triangle_fraction == 1.0, "{row:?}");
-    // A scene has no gate of another kind.
-    let other = LodOptions { gate: GateMode::Uniform, ..options };
+    // Other gates are drawn as well, but for the random one, which scenes do not have.
+    let uniform = LodOptions { gate: GateMode::Uniform, ..options.clone() };
+    let (report, _) = scene(&gpu, subject(&model), &uniform, &quarter, &|_| ()).expect("measured");
+    let row = report.distances[0];
+    assert!(row.animation.bones < row.off.bones && row.animation.displacement.largest > ROUNDING, "{row:?}");
+    let other = LodOptions { gate: GateMode::Random, ..options };
     assert_eq!(refused(scene(&gpu, subject(&model), &other, &quarter, &|_| ())), "gate");
     assert_eq!(refused(drawn(&gpu, subject(&model), &other, &quarter, &|_| ())), "gate");
 }
