@@ -100,7 +100,12 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     ),
     ("/characters/0/priorities", "[]", "characters[0].priorities = []", "must be an object"),
     ("/characters/0/priorities", r#"{"hand": 2}"#, "characters[0].priorities.hand = 2", "0..=1"),
-    ("/characters/0/priorities", r#"{"nobody": 1}"#, "characters[0].priorities.nobody = nobody", "bones"),
+    (
+        "/characters/0/priorities",
+        r#"{"nobody": 1}"#,
+        "characters[0].priorities.nobody = nobody",
+        "an index below",
+    ),
     ("/characters/0/tiers", "[0.5, 0.25, 0.2, 0.1]", "characters[0].tiers.len = 4", "0..=3"),
     ("/characters/0/tiers", "[0.5, 0.5]", "characters[0].tiers[1].bones = 0.5", "below 0.5"),
     (

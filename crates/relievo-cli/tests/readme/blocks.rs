@@ -57,6 +57,23 @@ mod drawing {
     // end
 }
 
+/// A character with reduced skeletons and a hand that is always sampled.
+#[rustfmt::skip]
+fn characters((mut scene, model): (Scene, Model)) -> Result<(), Error> {
+    // begin docs/characters.md
+    let options = CharacterOptions {
+        tiers: SkeletonTier::DEFAULT.to_vec(),                            // half of the bones, a quarter, rigid parts
+        priorities: BTreeMap::from([("hand_left", 1.0)]),                 // sampled in every frame
+        ..CharacterOptions::default()
+    };
+    let crowd = scene.add_character_with(&model, 100, &options)?;
+    for skeleton in scene.skeletons(crowd)? {
+        println!("{} bones, {} off, {} bytes", skeleton.bones, skeleton.error, skeleton.bytes);
+    }
+    // end
+    Ok(())
+}
+
 /// A scene in a program, with what that has already.
 #[rustfmt::skip]
 fn scene(
@@ -163,23 +180,6 @@ fn levels((mut scene, mut view): (Scene, View), mut renderer: Renderer, tree: Ob
     scene.set_level_of_detail(tree, &level_of_detail)?;
     renderer.prepare(&scene)?;                                            // a new transition has pipelines of its own
     view.set_quality(Quality { triangles: Some(500_000), ..Quality::pixels(1.0) })?;
-    // end
-    Ok(())
-}
-
-/// A character with reduced skeletons and a hand that is always sampled.
-#[rustfmt::skip]
-fn characters((mut scene, model): (Scene, Model)) -> Result<(), Error> {
-    // begin docs/characters.md
-    let options = CharacterOptions {
-        tiers: SkeletonTier::DEFAULT.to_vec(),                            // half of the bones, a quarter, rigid parts
-        priorities: BTreeMap::from([("hand_left", 1.0)]),                 // sampled in every frame
-        ..CharacterOptions::default()
-    };
-    let crowd = scene.add_character_with(&model, 100, &options)?;
-    for skeleton in scene.skeletons(crowd)? {
-        println!("{} bones, {} off, {} bytes", skeleton.bones, skeleton.error, skeleton.bytes);
-    }
     // end
     Ok(())
 }
