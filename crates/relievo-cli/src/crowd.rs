@@ -140,9 +140,9 @@ pub struct Crowd {
     /// be random.
     #[arg(long, conflicts_with_all = ["pareto", "image"])]
     scene: bool,
-    /// Influences per vertex: all; or as few as move no vertex by more than PIXELS. Default: full; with --scene
-    /// bounded:0.5.
-    #[arg(long, value_name = "full|bounded:PIXELS")]
+    /// Influences per vertex: all; as few as move no vertex by more than PIXELS; the K strongest; or all at the nearer
+    /// distance of --range, and one at the farther. Default: full; with --scene bounded:0.5.
+    #[arg(long, value_name = "full|bounded:PIXELS|truncate:K|fade")]
     skinning: Option<String>,
     /// The triangles of the meshes: all; or as few as keep the surface within PIXELS of its place, with levels that change at
     /// once (bounded) or move into each other (geomorph). Default: full; with --scene bounded:0.5.

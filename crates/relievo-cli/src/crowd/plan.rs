@@ -113,14 +113,18 @@ fn detail(field: &str, text: &str) -> Result<Detail, InputError> {
         within.ok_or_else(|| refused("must have 0 to 1e6 pixels after the colon"))
     };
     let is_mesh = field == "mesh";
+    let most = |number: &str| {
+        let within = number.parse().ok().filter(|most| (1..=8).contains(most));
+        within.ok_or_else(|| refused("must have 1 to 8 influences after the colon"))
+    };
     match text.split_once(':') {
         None if text == "full" => Ok(Detail::Full),
+        None if text == "fade" && !is_mesh => Ok(Detail::Faded),
+        Some(("truncate", number)) if !is_mesh => Ok(Detail::Truncated { most: most(number)? }),
         Some(("bounded", number)) => Ok(Detail::Bounded { pixels: pixels(number)? }),
         Some(("geomorph", number)) if is_mesh => Ok(Detail::Geomorph { pixels: pixels(number)? }),
         _ if is_mesh => Err(refused("must be full, bounded:PIXELS or geomorph:PIXELS")),
-        _ => Err(refused(
-            "must be full or bounded:PIXELS, as a scene skins; `relievo skin --influences` has the others",
-        )),
+        _ => Err(refused("must be full, bounded:PIXELS, truncate:K or fade")),
     }
 }
 
@@ -140,8 +144,12 @@ mod tests {
             assert_eq!(mesh(name).expect_err("refused").path, "mesh", "{name}");
             assert!(skinning(name).is_err(), "{name}");
         }
-        for name in ["fade", "truncate:2", "truncate:x"] {
-            assert!(skinning(name).expect_err("refused").bound.contains("relievo skin"), "{name}");
+        for name in ["fade", "truncate:2"] {
+            assert_eq!(skinning(name).expect("valid").to_string(), name);
+            assert!(mesh(name).is_err(), "{name}");
+        }
+        for name in ["truncate:x", "truncate:0", "truncate:9", "fade:1"] {
+            assert!(skinning(name).is_err(), "{name}");
         }
         for name in ["", "bounded", "bounded:-1", "bounded:NaN", "bounded:x", "half", "full:1"] {
             assert_eq!(skinning(name).expect_err("refused").path, "skinning", "{name}");

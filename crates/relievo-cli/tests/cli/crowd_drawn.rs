@@ -211,7 +211,7 @@ fn bad_input_is_refused_and_nothing_written() {
         (&["--image", "--backend", "cpu"], &["backend", "gpu"]),
         (&["--skinning", "fade"], &["skinning", "--image"]),
         (&["--image", "--skinning", "half"], &["skinning", "half", "bounded:PIXELS"]),
-        (&["--image", "--skinning", "truncate:2"], &["skinning", "truncate:2", "relievo skin"]),
+        (&["--image", "--skinning", "truncate:9"], &["skinning", "truncate:9", "1 to 8"]),
         (&["--scene", "--skinning", "fade"], &["skinning", "fade", "bounded:PIXELS", "relievo skin"]),
         (&["--image", "--skinning", "bounded:-1"], &["skinning", "bounded:-1", "1e6"]),
         (&["--mesh", "full"], &["mesh", "--image"]),

@@ -185,13 +185,21 @@ pub enum Detail {
         /// The number of pixels, in 0..=1e6.
         pixels: f32,
     },
+    /// Of influences: the strongest of each vertex. Their error is not bounded.
+    Truncated {
+        /// Largest number of influences per vertex, in 1..=8.
+        most: u32,
+    },
+    /// Of influences: all at the nearer distance of [`CrowdOptions::range`], one at its farther distance. Their error is not
+    /// bounded.
+    Faded,
 }
 
 impl Detail {
     /// The number of pixels by which what is drawn may be off.
     pub fn pixels(self) -> f32 {
         match self {
-            Self::Full => 0.0,
+            Self::Full | Self::Truncated { .. } | Self::Faded => 0.0,
             Self::Bounded { pixels } | Self::Geomorph { pixels } => pixels,
         }
     }
@@ -203,6 +211,8 @@ impl fmt::Display for Detail {
             Self::Full => f.write_str("full"),
             Self::Bounded { pixels } => write!(f, "bounded:{pixels}"),
             Self::Geomorph { pixels } => write!(f, "geomorph:{pixels}"),
+            Self::Truncated { most } => write!(f, "truncate:{most}"),
+            Self::Faded => f.write_str("fade"),
         }
     }
 }
@@ -234,10 +244,17 @@ impl DrawnOptions {
     /// Checks both options.
     ///
     /// # Errors
-    /// [`InputError`] for pixels out of their range, and for influences with a geomorph.
+    /// [`InputError`] for pixels or a number of influences out of their range, for influences with a geomorph, and for meshes with
+    /// a method of influences.
     pub fn validate(&self) -> Result<(), InputError> {
         if let Detail::Geomorph { .. } = self.skinning {
-            return Err(InputError::new("skinning", self.skinning, "must be full or bounded"));
+            return Err(InputError::new("skinning", self.skinning, "must not be a geomorph"));
+        }
+        if let Detail::Truncated { most } = self.skinning {
+            check("skinning.most", most.into(), 1.0..=8.0)?;
+        }
+        if let Detail::Truncated { .. } | Detail::Faded = self.mesh {
+            return Err(InputError::new("mesh", self.mesh, "must be full, bounded or a geomorph"));
         }
         check("skinning.pixels", self.skinning.pixels().into(), 0.0..=1e6)?;
         check("mesh.pixels", self.mesh.pixels().into(), 0.0..=1e6)

@@ -152,11 +152,11 @@ pub fn scene(
 
 /// The ways to draw in the order of [`SceneRow::NAMES`].
 fn ways(all: &Parts, drawn: &DrawnOptions) -> Vec<Parts> {
-    let Parts { bones, influences, mesh, gate } = *all;
+    let Parts { bones, influences, mesh, gate, skinning } = *all;
     let mut ways = vec![
         Parts::NONE,
         Parts { bones, gate, ..Parts::NONE },
-        Parts { influences, ..Parts::NONE },
+        Parts { influences, skinning, ..Parts::NONE },
         Parts { mesh: 0.0, ..*all },
     ];
     if drawn.mesh != Detail::Full {

@@ -64,8 +64,9 @@ impl Look {
         let mut scene = Scene::new(gpu)?;
         let world = |units: f32| units * stage.metres_a_unit;
         let Range { min, max } = stage.options.range;
-        let gate = parts.bone_gate(Range { min: world(min), max: world(max) });
-        let options = CharacterOptions { gate, ..CharacterOptions::default() };
+        let range = Range { min: world(min), max: world(max) };
+        let (gate, influences) = (parts.bone_gate(range), parts.influence_lod(range));
+        let options = CharacterOptions { gate, influences, ..CharacterOptions::default() };
         let crowd = scene.add_character_with(&drawn.model, placements.len(), &options)?;
         scene.set_error_budget(budget)?;
         if parts.mesh > 0.0 {

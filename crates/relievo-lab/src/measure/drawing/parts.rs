@@ -1,10 +1,10 @@
 //! The pixels that each part of level of detail may take, as a scene takes them: their sum, and fractions of it.
 
 use relievo::InputError;
-use relievo::scene::{BoneGate, DistanceRange, ErrorBudget, Quality};
+use relievo::scene::{BoneGate, DistanceRange, ErrorBudget, InfluenceLod, Quality};
 
 use crate::measure::gates::GateMode;
-use crate::measure::options::DrawnOptions;
+use crate::measure::options::{Detail, DrawnOptions};
 
 /// Pixels for bones that keep an old pose, for influences that are left out, and for coarser meshes; and the gate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,11 +13,13 @@ pub(crate) struct Parts {
     pub influences: f32,
     pub mesh: f32,
     pub gate: GateMode,
+    pub skinning: Detail,
 }
 
 impl Parts {
     /// Full detail.
-    pub const NONE: Self = Self { bones: 0.0, influences: 0.0, mesh: 0.0, gate: GateMode::Off };
+    pub const NONE: Self =
+        Self { bones: 0.0, influences: 0.0, mesh: 0.0, gate: GateMode::Off, skinning: Detail::Full };
 
     /// Those of a gate and of how the crowd is drawn.
     pub fn new(gate: &GateMode, drawn: &DrawnOptions) -> Result<Self, InputError> {
@@ -29,7 +31,17 @@ impl Parts {
                 return Err(InputError::new("gate", gate.name().as_str(), bound));
             }
         };
-        Ok(Self { bones, influences: drawn.skinning.pixels(), mesh: drawn.mesh.pixels(), gate: *gate })
+        let [influences, mesh] = [drawn.skinning, drawn.mesh].map(Detail::pixels);
+        Ok(Self { bones, influences, mesh, gate: *gate, skinning: drawn.skinning })
+    }
+
+    /// The influences of a scene's character. `range` has the distances in world units over which they fade.
+    pub fn influence_lod(&self, range: DistanceRange) -> InfluenceLod {
+        match self.skinning {
+            Detail::Full | Detail::Bounded { .. } | Detail::Geomorph { .. } => InfluenceLod::Bounded,
+            Detail::Truncated { most } => InfluenceLod::Truncated(most),
+            Detail::Faded => InfluenceLod::Faded(range),
+        }
     }
 
     /// The gate of a scene's character. `range` has the distances in world units over which Ω falls.
@@ -80,9 +92,13 @@ mod tests {
         assert_eq!((refused.path.as_str(), refused.value.as_str()), ("gate", "random"));
         let gate = GateMode::Bounded { pixels: 2.0 };
         let bounded = Parts::new(&gate, &DrawnOptions::default());
-        assert_eq!(bounded, Ok(Parts { bones: 2.0, influences: 0.5, mesh: 0.5, gate }));
+        let skinning = Detail::Bounded { pixels: 0.5 };
+        assert_eq!(bounded, Ok(Parts { bones: 2.0, influences: 0.5, mesh: 0.5, gate, skinning }));
         let uniform = Parts::new(&GateMode::Uniform, &DrawnOptions::default()).expect("a scene has it");
         let range = DistanceRange { min: 1.0, max: 2.0 };
         assert_eq!((uniform.bones, uniform.bone_gate(range)), (0.0, BoneGate::Uniform(range)));
+        let faded = Parts { skinning: Detail::Faded, ..Parts::NONE };
+        assert_eq!(faded.influence_lod(range), InfluenceLod::Faded(range));
+        assert_eq!(Parts::NONE.influence_lod(range), InfluenceLod::Bounded);
     }
 }
