@@ -212,7 +212,7 @@ fn bad_input_is_refused_and_nothing_written() {
         (&["--skinning", "fade"], &["skinning", "--image"]),
         (&["--image", "--skinning", "half"], &["skinning", "half", "bounded:PIXELS"]),
         (&["--image", "--skinning", "truncate:9"], &["skinning", "truncate:9", "1 to 8"]),
-        (&["--scene", "--skinning", "fade"], &["skinning", "fade", "bounded:PIXELS", "relievo skin"]),
+        (&["--scene", "--skinning", "fade:1"], &["skinning", "fade:1", "truncate:K or fade"]),
         (&["--image", "--skinning", "bounded:-1"], &["skinning", "bounded:-1", "1e6"]),
         (&["--mesh", "full"], &["mesh", "--image"]),
         (&["--image", "--mesh", "half"], &["mesh", "half", "bounded:PIXELS"]),
