@@ -151,7 +151,7 @@ pub(super) fn unit_normal(normal: [f32; 3]) -> Option<[f32; 3]> {
     }
 }
 
-/// Computes tangents, one per vertex, for a mesh without tangents; see [`mod@tangents`].
+/// Computes tangents, one per vertex, for a mesh without tangents (thesis B section 4.2).
 ///
 /// # Errors
 /// [`InputError`] for coordinates out of range, and for indices of vertices that do not exist.

@@ -245,9 +245,11 @@ fn machine() -> Model {
     const COUNT: usize = 19;
     let bone = |at: usize| Bone {
         name: format!("part {at}"),
-        parent: at.checked_sub(1).map(|last| if at % 5 == 0 { last as u32 / 2 } else { last as u32 }),
+        parent: at
+            .checked_sub(1)
+            .map(|last| if at.is_multiple_of(5) { last as u32 / 2 } else { last as u32 }),
         rest: Transform::from_translation([
-            if at % 5 == 0 { 30.0 } else { 0.0 },
+            if at.is_multiple_of(5) { 30.0 } else { 0.0 },
             if at == 0 { 0.0 } else { 22.0 },
             0.0,
         ]),
