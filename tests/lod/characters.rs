@@ -325,7 +325,7 @@ fn tiers_of_files() {
         add_levels(&mut model, &[0], poses).expect("valid");
         (path.file_stem().expect("a file").to_string_lossy().into_owned(), model)
     };
-    let own = [("machine".to_owned(), machine())];
+    let own = [("creature".to_owned(), character()), ("machine".to_owned(), machine())];
     println!("{HEAD}");
     for (name, model) in own.into_iter().chain(std::env::split_paths(&files).map(|path| file(&path))) {
         compare(&name, &model, 240);
