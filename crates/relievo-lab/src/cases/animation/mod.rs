@@ -160,11 +160,7 @@ pub fn random_crowd(
     bones: usize,
     instances: usize,
 ) -> Result<(Skeleton, ClipSet, Vec<Instance>), InputError> {
-    let skeleton = random_skeleton(case, bones)?;
-    let clips = random_clips(case, &skeleton, 3)?;
-    let set = ClipSet::new(&clips.iter().collect::<Vec<_>>())?;
-    let instances = random_instances(case, &set, instances);
-    Ok((skeleton, set, instances))
+    crowd_of(case, random_skeleton(case, bones)?, instances)
 }
 
 /// The crowd of [`random_crowd`], with a skeleton of two tiers in odd cases.
@@ -176,7 +172,15 @@ pub(crate) fn tiered_crowd(
     bones: usize,
     instances: usize,
 ) -> Result<(Skeleton, ClipSet, Vec<Instance>), InputError> {
-    let skeleton = tiered_skeleton(case, bones)?;
+    crowd_of(case, tiered_skeleton(case, bones)?, instances)
+}
+
+/// A skeleton, a set of three random clips, and instances that play them.
+fn crowd_of(
+    case: u32,
+    skeleton: Skeleton,
+    instances: usize,
+) -> Result<(Skeleton, ClipSet, Vec<Instance>), InputError> {
     let clips = random_clips(case, &skeleton, 3)?;
     let set = ClipSet::new(&clips.iter().collect::<Vec<_>>())?;
     let instances = random_instances(case, &set, instances);
