@@ -147,6 +147,13 @@ fn a_hand_of_priority_one_keeps_every_keyframe() {
         let [with, body] = stale(BTreeMap::from([(name, 1.0)]));
         assert!(with < 1e-4 && without > 1e-3 && body > 1e-3, "{gate:?}: {with} {without} {body}");
     }
+    // The hand stays in every reduced skeleton, and is all that is sampled beyond the range.
+    let far = |priorities: BTreeMap<&str, f32>| {
+        let tiers = SkeletonTier::DEFAULT.to_vec();
+        let options = CharacterOptions { priorities, tiers, ..gated(BoneGate::Uniform(RANGE)) };
+        Crowd::new(&model, &options, 1.0, &[4e3]).bones(4)
+    };
+    assert_eq!([far(BTreeMap::new()), far(BTreeMap::from([(name, 1.0)]))], [0.0, 1.0]);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::Character;
 use crate::animation::priority::USER_DEFAULT;
 use crate::animation::{
     AnimatedBones, BoundTable, ClipSet, ExpectationTable, Gate, Order, Priorities, PriorityTable,
-    RotationPath, Weights, Wrap,
+    Range as DistanceRange, RotationPath, Weights, Wrap,
 };
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::{Affine, Clip, Model, Skeleton};
@@ -36,28 +36,32 @@ pub struct SkeletonStatistics {
     pub bytes: u64,
 }
 
-/// The gate of a character, and its assignment parameters without the scene's error budget.
+/// The skeletons, clips and gate of a character, and its assignment parameters without the scene's error budget.
 pub(super) struct Detail {
+    /// The tiers of the skeleton, without clips: `set` has them.
+    pub tiers: Tiers,
+    pub set: ClipSet,
     pub gate: Gate,
     pub assign: AssignParams,
 }
 
 impl Detail {
-    /// The gate and the parameters for a character. `radius` is the radius of its bounding sphere.
-    pub fn new(
-        options: &CharacterOptions<'_>,
-        model: &Model,
-        tiers: &Tiers,
-        set: &ClipSet,
-        radius: f32,
-    ) -> Result<Self, InputError> {
+    /// The level of detail of a character. `radius` is the radius of its bounding sphere.
+    pub fn new(options: &CharacterOptions<'_>, model: &Model, radius: f32) -> Result<Self, InputError> {
         let of = |error: InputError| error.below("options");
         options.gate.validate().map_err(of)?;
         options.influences.validate().map_err(of)?;
         let user = user_priorities(&options.priorities, model)?;
-        let (gate, unit) = gate(options, (model, &user), tiers, set)?;
-        let [omega_start, omega_rate] =
-            options.gate.range().map_or([0.0; 2], |range| [range.min, (range.max - range.min).recip()]);
+        // A bone that no gate skips collapses in no tier.
+        let bones = model.skeleton.bones().iter().zip(&user);
+        let keep: Vec<String> =
+            bones.filter(|(_, priority)| **priority == 1.0).map(|(bone, _)| bone.name.clone()).collect();
+        let mut tiers = Tiers::new(model, &options.tiers, &keep).map_err(of)?;
+        let set = ClipSet::new(&tiers.clips.iter().collect::<Vec<_>>())?;
+        let (gate, unit) = gate(options, (model, &user), &tiers, &set)?;
+        tiers.clips.clear();
+        let falling = |range: DistanceRange| [range.min, (range.max - range.min).recip()];
+        let [omega_start, omega_rate] = options.gate.range().map_or([0.0; 2], falling);
         let mut assign = AssignParams {
             first: 0,
             instances: 0,
@@ -81,11 +85,10 @@ impl Detail {
             InfluenceLod::Bounded => {}
             InfluenceLod::Truncated(most) => assign.max_influences = most,
             InfluenceLod::Faded(range) => {
-                assign.fade_start = range.min;
-                assign.fade_rate = (range.max - range.min).recip();
+                [assign.fade_start, assign.fade_rate] = falling(range);
             }
         }
-        Ok(Self { gate, assign })
+        Ok(Self { tiers, set, gate, assign })
     }
 }
 

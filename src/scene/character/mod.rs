@@ -15,7 +15,7 @@ mod runtime;
 use std::collections::BTreeSet;
 
 use crate::Error;
-use crate::animation::{ClipSet, RootMotion};
+use crate::animation::RootMotion;
 use crate::gpu::Gpu;
 use crate::scene::instances::Changed;
 use crate::scene::mesh;
@@ -26,7 +26,6 @@ use crate::scene::playing::Playing;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
 use crate::skinning::merged::Merged;
-use crate::skinning::tiers::Tiers;
 use detail::Detail;
 pub use detail::SkeletonStatistics;
 pub(super) use detail::TICKS;
@@ -84,15 +83,12 @@ impl Character {
     ) -> Result<Self, Error> {
         let motions = options.root_motion.map(|root| root.take(&mut merged.model)).transpose()?;
         let model = &merged.model;
-        let mut tiers = Tiers::new(model, &options.tiers, &[]).map_err(|error| error.below("options"))?;
-        let set = ClipSet::new(&tiers.clips.iter().collect::<Vec<_>>())?;
         let spheres: Vec<_> =
             (0..model.clips.len()).map(|clip| BoundingSphere::in_clip(model, clip)).collect();
-        let Detail { gate, assign } = Detail::new(options, model, &tiers, &set, spheres[0].radius)?;
+        let Detail { tiers, set, gate, assign } = Detail::new(options, model, spheres[0].radius)?;
         let bone = |name: &str| bone_of(model, name);
         let layers = CharacterLayer::of_masks(model, &options.layers, bone, capacity)?;
         let masks = layers.iter().map(|layer| layer.mask.clone()).collect();
-        tiers.clips.clear();
         let radii = tiers.bone_radii[..model.skeleton.len()].to_vec();
         let shared = Shared::new(gpu, model, (set, gate), (tiers, masks))?;
         let follows = radii.iter().zip(followed(model));
