@@ -49,7 +49,7 @@ fn heights_equal_the_reference(gpu: &Gpu) {
     batch.set(gpu, &[[3, 4], [-1, 0]], &Features::default()).expect("set");
     gpu.run("test", |encoder| batch.record(encoder)).expect("run");
     let actual = batch.fields()[0].heights.read_blocking(gpu).expect("read");
-    let reference = |patch| height(&config, &Features::default(), Window { patch, apron: 0 });
+    let reference = |patch| height(&config, &Features::default(), Window { patch, apron: 0 }.region(&config));
     assert_eq!(actual, [reference([3, 4]), reference([-1, 0])].concat());
 }
 
@@ -151,7 +151,14 @@ fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_els
                 batch.set(&gpu, &[[0, 0]], &Features::default()).expect("set");
                 gpu.run("test", |encoder| batch.record(encoder)).expect("run");
                 let actual = batch.fields()[0].heights.read_blocking(&gpu).expect("read");
-                assert!(actual == height(&config, &Features::default(), Window { patch: [0, 0], apron }));
+                assert!(
+                    actual
+                        == height(
+                            &config,
+                            &Features::default(),
+                            Window { patch: [0, 0], apron }.region(&config)
+                        )
+                );
             }
             Err(error) => {
                 assert!(gpu.max_binding() == 128 << 20, "{error}");
@@ -175,7 +182,8 @@ fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     let points = 1025_usize * 1025;
     assert!(batch.bytes() <= 8 * points as u64 * u64::from(count), "{} bytes", batch.bytes());
     let last = batch.fields()[1].heights.read_blocking(&gpu).expect("read");
-    let expected = height(&config, &Features::default(), Window { patch: [32, -32], apron: 0 });
+    let expected =
+        height(&config, &Features::default(), Window { patch: [32, -32], apron: 0 }.region(&config));
     assert!(last[last.len() - points..] == expected);
     assert!(batch.set(&gpu, &[[0, 0]; 34], &Features::default()).is_err(), "34 patches do not fit");
 }

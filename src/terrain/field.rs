@@ -66,7 +66,8 @@ pub fn generate(
             HeightInterpolation::Linear => height::reference::height,
             HeightInterpolation::Smooth => smooth::reference::smooth,
         };
-        let window = |patch: &[i32; 2]| made(config, features, Window { patch: *patch, apron });
+        let window =
+            |patch: &[i32; 2]| made(config, features, Window { patch: *patch, apron }.region(config));
         return patches.par_iter().map(window).collect();
     }
     let mut fields: Vec<_> =

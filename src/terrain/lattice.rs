@@ -1,21 +1,12 @@
 //! Lattices of points in world coordinates: the base lattice, where subdivision starts, and lookup of the features on a lattice.
 
-use crate::terrain::config::{Border, HEIGHT_LIMIT, HeightInterpolation, PATCH_EDGE, TerrainConfig};
+use crate::terrain::config::{HEIGHT_LIMIT, HeightInterpolation, PATCH_EDGE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject};
 use crate::terrain::window::{Lattice, Span};
 
-/// Heights of the base lattice, where subdivision starts. For `seamless` terrain they are random heights on the points of
-/// `spans`. For a patch that is generated alone they are the patch's four corners.
-pub(crate) fn base_lattice(
-    config: &TerrainConfig,
-    features: &Features,
-    patch: [i32; 2],
-    spans: [Span; 2],
-) -> Vec<i32> {
-    if config.border != Border::Seamless {
-        return corners(config, features, patch);
-    }
+/// Heights of the base lattice of `seamless` terrain, where subdivision starts: random heights on the points of `spans`.
+pub(crate) fn base_lattice(config: &TerrainConfig, features: &Features, spans: [Span; 2]) -> Vec<i32> {
     let draw = Draw::new(config);
     let spacing = config.sample_spacing() << config.levels();
     let injected = Injected::new(features, spans, spacing, (1, false));
@@ -32,7 +23,8 @@ pub(crate) fn base_lattice(
     grid
 }
 
-fn corners(config: &TerrainConfig, features: &Features, patch: [i32; 2]) -> Vec<i32> {
+/// The four corners of a patch that is generated alone.
+pub(crate) fn corners(config: &TerrainConfig, features: &Features, patch: [i32; 2]) -> Vec<i32> {
     let mut corners = config.fixed_corners().to_vec();
     let lattice = Lattice { origin: [0, 0], width: 2, spacing: PATCH_EDGE };
     for (x, y, height) in features.on_lattice(Features::world_of(config, patch), lattice, false) {

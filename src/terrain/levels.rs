@@ -6,8 +6,8 @@ use crate::shared::terrain::level::Level;
 use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fields::REMEDY;
-use crate::terrain::lattice::base_lattice;
-use crate::terrain::window::{Lattice, SMOOTH_RIM, Span, Window, Windows};
+use crate::terrain::lattice::{base_lattice, corners};
+use crate::terrain::window::{Lattice, Region, Regions, SMOOTH_RIM, Span, Window, Windows};
 use crate::{Error, InputError};
 
 /// A kernel that computes one level of subdivision from the next coarser level.
@@ -43,10 +43,28 @@ impl LevelPass {
         feature_capacity: usize,
         buffers: HeightBuffers<'_>,
     ) -> Result<HeightJob, Error> {
-        let (Windows { count, apron }, HeightBuffers { output, scratch }) = (windows, buffers);
-        Window { patch: [0, 0], apron }.validate(config)?;
-        let widths = level_widths(config, apron);
-        output.check_holds("output", HeightJob::output_points(config, windows))?;
+        Window { patch: [0, 0], apron: windows.apron }.validate(config)?;
+        let job = self.prepare_regions(gpu, config, windows.regions(config), feature_capacity, buffers)?;
+        Ok(HeightJob { apron: windows.apron, ..job })
+    }
+
+    /// Prepares the generation of `regions`. The configuration must be valid.
+    ///
+    /// # Errors
+    /// [`InputError`] for regions coarser than the base lattice, and for buffers that are too short; [`GpuError`].
+    pub fn prepare_regions(
+        &self,
+        gpu: &Gpu,
+        config: &TerrainConfig,
+        regions: Regions,
+        feature_capacity: usize,
+        buffers: HeightBuffers<'_>,
+    ) -> Result<HeightJob, Error> {
+        let (Regions { count, width, coarser }, HeightBuffers { output, scratch }) = (regions, buffers);
+        // One level is subdivided at least: the output is no base lattice.
+        InputError::check_within("coarser", coarser, 0..=config.levels().saturating_sub(1))?;
+        let widths = level_widths(config, width, coarser);
+        output.check_holds("output", points(width, count))?;
         scratch.check(&widths, count)?;
         let grids: Vec<u32> = widths[1..].iter().map(|width| width + 2 * (rim(config) - 1)).collect();
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
@@ -59,7 +77,7 @@ impl LevelPass {
                 key: config.key().into(),
                 fine_width: widths[level + 1],
                 coarse_width: widths[level],
-                spacing: (config.sample_spacing() << left) as u32,
+                spacing: (config.sample_spacing() << (left + coarser as usize)) as u32,
                 range: config.level_range(level as u32),
                 edge_range: config.edge_range(level as u32),
                 features: features.grid(level),
@@ -80,20 +98,30 @@ impl LevelPass {
             origins.push(starts);
         }
         let job = Job::new(gpu, self.label, steps)?;
-        Ok(HeightJob { config: config.clone(), count, apron, widths, base, origins, features, job })
+        Ok(HeightJob {
+            config: config.clone(),
+            count,
+            apron: 0,
+            coarser,
+            widths,
+            base,
+            origins,
+            features,
+            job,
+        })
     }
 }
 
-/// Width of a window in points at each level, starting with the base lattice. These widths suffice for windows at any position
+/// Width of a region in points at each level, starting with the base lattice. These widths suffice for regions at any position
 /// relative to the coarse lattices.
-fn level_widths(config: &TerrainConfig, apron: u32) -> Vec<u32> {
+fn level_widths(config: &TerrainConfig, width: u32, coarser: u32) -> Vec<u32> {
     let halo = match (config.border, config.interpolation) {
         (Border::Seamless, HeightInterpolation::Linear) => 3,
         (Border::Seamless, HeightInterpolation::Smooth) => 8,
         _ => 1,
     };
-    let mut widths = vec![config.patch_size + 2 * apron];
-    for _ in 0..config.levels() {
+    let mut widths = vec![width];
+    for _ in coarser..config.levels() {
         widths.push((widths[widths.len() - 1] - 1) / 2 + halo);
     }
     widths.reverse();
@@ -137,7 +165,16 @@ impl HeightScratch {
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu, config: &TerrainConfig, windows: Windows) -> Result<Self, GpuError> {
-        let [first, second] = Self::points(&level_widths(config, windows.apron), windows.count);
+        Self::for_regions(gpu, config, windows.regions(config))
+    }
+
+    /// Allocates scratch memory for the generation of `regions`.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
+    pub fn for_regions(gpu: &Gpu, config: &TerrainConfig, regions: Regions) -> Result<Self, GpuError> {
+        let widths = level_widths(config, regions.width, regions.coarser);
+        let [first, second] = Self::points(&widths, regions.count);
         let buffer =
             |points| Buffer::new(gpu, "terrain scratch", points).map_err(|error| error.with_remedy(REMEDY));
         Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
@@ -170,6 +207,7 @@ pub struct HeightJob {
     config: TerrainConfig,
     count: u32,
     apron: u32,
+    coarser: u32,
     widths: Vec<u32>,
     base: Buffer<i32>,
     /// First point of each window, for every level but the base lattice, in units of the level's spacing.
@@ -189,16 +227,50 @@ impl HeightJob {
     /// # Errors
     /// [`InputError`] for too many patches or patches out of bounds; [`GpuError::Limit`] for more features than the capacity.
     pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
+        self.check_count("patches.len", patches.len())?;
+        let windows = patches.iter().map(|patch| Window { patch: *patch, apron: self.apron });
+        windows.clone().try_for_each(|window| window.validate(&self.config))?;
+        let regions: Vec<Region> = windows.map(|window| window.region(&self.config)).collect();
+        let worlds: Vec<_> = patches.iter().map(|patch| Features::world_of(&self.config, *patch)).collect();
+        self.write(gpu, &regions, &worlds, features)
+    }
+
+    /// Sets the regions, by their first samples, and features for the next recordings ([`Region::first`]). The number of regions
+    /// must not exceed the prepared count.
+    ///
+    /// # Errors
+    /// [`InputError`] for too many regions or regions out of bounds; [`GpuError::Limit`] for more features than the capacity.
+    pub fn set_regions(&self, gpu: &Gpu, firsts: &[[i64; 2]], features: &Features) -> Result<(), Error> {
+        self.check_count("firsts.len", firsts.len())?;
+        let width = self.widths[self.widths.len() - 1];
+        let region = |first: &[i64; 2]| Region { first: *first, width, coarser: self.coarser };
+        let regions: Vec<Region> = firsts.iter().map(region).collect();
+        regions.iter().try_for_each(|region| region.validate(&self.config))?;
+        self.write(gpu, &regions, &vec![[0, 0]; firsts.len()], features)
+    }
+
+    fn check_count(&self, path: &str, count: usize) -> Result<(), InputError> {
         let bound = || format!("must be at most {}, the batch's count", self.count);
-        InputError::check(patches.len() <= self.count as usize, "patches.len", patches.len(), bound)?;
+        InputError::check(count <= self.count as usize, path, count, bound)
+    }
+
+    /// Writes the base lattices, the origins and the features of regions. `worlds` are the worlds of their features.
+    fn write(
+        &self,
+        gpu: &Gpu,
+        regions: &[Region],
+        worlds: &[[i32; 2]],
+        features: &Features,
+    ) -> Result<(), Error> {
         let mut base = Vec::new();
-        let mut origins = vec![Vec::with_capacity(patches.len()); self.origins.len()];
-        for &patch in patches {
-            let window = Window { patch, apron: self.apron };
-            window.validate(&self.config)?;
-            let levels = window.levels(&self.config);
+        let mut origins = vec![Vec::with_capacity(regions.len()); self.origins.len()];
+        for (region, world) in regions.iter().zip(worlds) {
+            let levels = region.levels(&self.config);
             let widened = |Span { first, .. }| Span { first, last: first + i64::from(self.widths[0]) - 1 };
-            base.extend(base_lattice(&self.config, features, patch, levels[0].map(widened)));
+            base.extend(match self.config.border {
+                Border::Seamless => base_lattice(&self.config, features, levels[0].map(widened)),
+                Border::Wrap | Border::Blend(_) => corners(&self.config, features, *world),
+            });
             for (origins, spans) in origins.iter_mut().zip(&levels[1..]) {
                 origins.push(spans.map(|span| span.first as i32));
             }
@@ -207,13 +279,12 @@ impl HeightJob {
         for (buffer, origins) in self.origins.iter().zip(&origins) {
             buffer.write(gpu, origins)?;
         }
-        self.features.write(gpu, patches.len() as u32, |level, window| {
-            let spacing = self.config.sample_spacing() << (origins.len() - 1 - level);
+        self.features.write(gpu, regions.len() as u32, |level, window| {
+            let spacing = self.config.sample_spacing() << (origins.len() - 1 - level + self.coarser as usize);
             let first = origins[level][window as usize].map(|first| i64::from(first) * spacing);
             let origin = if self.config.border == Border::Seamless { first } else { [0, 0] };
             let lattice = Lattice { origin, width: self.widths[level + 1], spacing };
-            let world = Features::world_of(&self.config, patches[window as usize]);
-            features.on_lattice(world, lattice.grown(rim(&self.config)), true)
+            features.on_lattice(worlds[window as usize], lattice.grown(rim(&self.config)), true)
         })?;
         Ok(())
     }
@@ -231,9 +302,9 @@ mod tests {
     /// Each scratch buffer is exactly as large as the largest level that it ever holds.
     #[test]
     fn scratch_holds_what_dispatches_leave() {
-        let points = |size, coarse_levels, apron| {
+        let points = |size, coarse_levels, apron: u32| {
             let config = TerrainConfig { coarse_levels, ..TerrainConfig::new(size, 1.0, "").expect("valid") };
-            HeightScratch::points(&level_widths(&config, apron), 3)
+            HeightScratch::points(&level_widths(&config, config.patch_size + 2 * apron, 0), 3)
         };
         // The levels below the output are 131, 68, 36, 20, … points wide, from fine to coarse.
         assert_eq!(points(257, 0, 0), [3 * 131 * 131, 3 * 68 * 68]);
@@ -245,7 +316,7 @@ mod tests {
             coarse_levels: 8,
             ..TerrainConfig::new(3, 1.0, "").expect("valid")
         };
-        assert_eq!(HeightScratch::points(&level_widths(&smooth, 0), 3), [3 * 14 * 14; 2]);
+        assert_eq!(HeightScratch::points(&level_widths(&smooth, smooth.patch_size, 0), 3), [3 * 14 * 14; 2]);
     }
 
     /// The computed level widths are enough for every window, whatever its position relative to the coarse lattices.
@@ -253,7 +324,7 @@ mod tests {
     fn level_widths_cover_every_alignment() {
         for (size, coarse_levels, apron) in [(3, 0, 0), (5, 3, 1), (33, 2, 7), (257, 8, 0), (17, 1, 40)] {
             let config = TerrainConfig { coarse_levels, ..TerrainConfig::new(size, 1.0, "").expect("valid") };
-            let widths = level_widths(&config, apron);
+            let widths = level_widths(&config, config.patch_size + 2 * apron, 0);
             for patch in -300..300 {
                 let levels = Window { patch: [patch, 1 - patch], apron }.levels(&config);
                 for (spans, width) in levels.iter().zip(&widths) {

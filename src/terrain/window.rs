@@ -31,6 +31,74 @@ pub struct Windows {
     pub apron: u32,
 }
 
+/// A square of samples of the plane, at the terrain's resolution or coarser. The terrain must be `seamless`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Region {
+    /// Column and row of the first sample, counted from the first sample of patch (0, 0), in distances between the region's samples.
+    pub first: [i64; 2],
+    /// Number of samples along an edge.
+    pub width: u32,
+    /// The region has every 2^`coarser`-th sample of the terrain's columns and rows, with `coarser` at most
+    /// [`TerrainConfig::levels`].
+    pub coarser: u32,
+}
+
+/// A batch of regions of equal width and resolution; see [`Region`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Regions {
+    /// Number of regions.
+    pub count: u32,
+    /// Number of samples along an edge.
+    pub width: u32,
+    /// Each region has every 2^`coarser`-th sample of the terrain's columns and rows.
+    pub coarser: u32,
+}
+
+impl Windows {
+    /// The same batch as regions.
+    pub(crate) fn regions(&self, config: &TerrainConfig) -> Regions {
+        Regions { count: self.count, width: config.patch_size + 2 * self.apron, coarser: 0 }
+    }
+}
+
+impl Region {
+    /// Columns and rows of the region at every level of subdivision, starting with the base lattice.
+    pub(crate) fn levels(&self, config: &TerrainConfig) -> Vec<[Span; 2]> {
+        let coarser: fn(Span) -> Span = match (config.border, config.interpolation) {
+            (Border::Seamless, HeightInterpolation::Linear) => Span::coarser,
+            (Border::Seamless, HeightInterpolation::Smooth) => Span::coarser_smooth,
+            _ => Span::halved,
+        };
+        let finest = self.first.map(|first| Span { first, last: first + i64::from(self.width) - 1 });
+        let subdivisions = config.levels().saturating_sub(self.coarser);
+        let coarser = |finer: &[Span; 2]| Some(finer.map(coarser));
+        let mut levels: Vec<_> = successors(Some(finest), coarser).take(subdivisions as usize + 1).collect();
+        levels.reverse();
+        levels
+    }
+
+    /// Checks that the region is not coarser than the base lattice and that world coordinates, including halos, fit `i32`.
+    ///
+    /// # Errors
+    /// [`InputError`] that names `coarser` or `first`.
+    pub fn validate(&self, config: &TerrainConfig) -> Result<(), InputError> {
+        InputError::check_within("coarser", self.coarser, 0..=config.levels())?;
+        for (axis, span) in self.levels(config)[0].iter().enumerate() {
+            if !is_in_world(config, span) {
+                let bound = "world coordinates (4096 a patch) with the region's halo must fit i32";
+                return Err(InputError::new(format!("first[{axis}]"), self.first[axis], bound));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether world coordinates of a span of the base lattice fit `i32`.
+fn is_in_world(config: &TerrainConfig, span: &Span) -> bool {
+    let base_spacing = config.sample_spacing() << config.levels();
+    [span.first, span.last].iter().all(|index| i32::try_from(index.saturating_mul(base_spacing)).is_ok())
+}
+
 /// An inclusive range of lattice indices along one axis, in units of the lattice's spacing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Span {
@@ -78,20 +146,16 @@ impl Window {
         })
     }
 
-    /// Columns and rows of the window at every level, starting with the base lattice. For a patch that is generated alone, the
-    /// apron is excluded.
+    /// The window as a region. For a patch that is generated alone, the apron is excluded.
+    pub fn region(&self, config: &TerrainConfig) -> Region {
+        let apron = if config.border == Border::Seamless { self.apron } else { 0 };
+        let alone = Self { apron, ..*self };
+        Region { first: alone.spans(config).map(|span| span.first), width: alone.width(config), coarser: 0 }
+    }
+
+    /// Columns and rows of the window at every level, starting with the base lattice.
     pub(crate) fn levels(&self, config: &TerrainConfig) -> Vec<[Span; 2]> {
-        let (apron, coarser): (_, fn(Span) -> Span) = match (config.border, config.interpolation) {
-            (Border::Seamless, HeightInterpolation::Linear) => (self.apron, Span::coarser),
-            (Border::Seamless, HeightInterpolation::Smooth) => (self.apron, Span::coarser_smooth),
-            _ => (0, Span::halved),
-        };
-        let finest = Self { apron, ..*self }.spans(config);
-        let coarser = |finer: &[Span; 2]| Some(finer.map(coarser));
-        let mut levels: Vec<_> =
-            successors(Some(finest), coarser).take(config.levels() as usize + 1).collect();
-        levels.reverse();
-        levels
+        self.region(config).levels(config)
     }
 
     /// Lattice of the window's samples, in the coordinates of the world that holds the window's features.
@@ -113,10 +177,8 @@ impl Window {
         if self.apron > MAX_APRON {
             return Err(InputError::new("apron", self.apron, format!("must be at most {MAX_APRON} samples")));
         }
-        let base_spacing = config.sample_spacing() << config.levels();
         for (axis, span) in self.levels(config)[0].iter().enumerate() {
-            let inside = |index: i64| i32::try_from(index * base_spacing).is_ok();
-            if !inside(span.first) || !inside(span.last) {
+            if !is_in_world(config, span) {
                 let field = format!("patchCoordinates[{axis}]");
                 let bound = "world coordinates (4096 a patch) with the patch's halo must fit i32";
                 return Err(InputError::new(field, self.patch[axis], bound));
@@ -143,5 +205,37 @@ impl Lattice {
     pub(crate) fn grown(self, rim: u32) -> Self {
         let origin = self.origin.map(|start| start - i64::from(rim) * self.spacing);
         Self { origin, width: self.width + 2 * rim, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::features::Features;
+    use crate::terrain::height::reference::height;
+    use crate::terrain::smooth::reference::smooth;
+
+    /// A coarser region has every second sample of the finer one, to the bit, on both sides of the origin.
+    #[test]
+    fn coarser_regions_have_every_second_sample() {
+        for interpolation in [HeightInterpolation::Linear, HeightInterpolation::Smooth] {
+            let config = TerrainConfig {
+                coarse_levels: 3,
+                interpolation,
+                ..TerrainConfig::new(17, 40.0, "regions").expect("valid")
+            };
+            let made = if interpolation == HeightInterpolation::Linear { height } else { smooth };
+            let heights = |first: [i64; 2], width: u32, coarser: u32| {
+                let region = Region { first, width, coarser };
+                region.validate(&config).expect("inside");
+                made(&config, &Features::default(), region)
+            };
+            for coarser in 0..config.levels() {
+                let (fine, coarse) = (heights([-14, 6], 21, coarser), heights([-7, 3], 11, coarser + 1));
+                for (at, height) in coarse.iter().enumerate() {
+                    assert_eq!(*height, fine[at / 11 * 2 * 21 + at % 11 * 2], "{coarser} {at}");
+                }
+            }
+        }
     }
 }

@@ -5,14 +5,14 @@ use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, mean_of_four};
 use crate::terrain::lattice::{Injected, base_lattice, world};
-use crate::terrain::window::{Span, Window};
+use crate::terrain::window::{Region, Span};
 
-/// Heights of a window, in rows of `window.width(config)` samples. The window must be valid.
-pub fn height(config: &TerrainConfig, features: &Features, window: Window) -> Vec<i32> {
-    let levels = window.levels(config);
+/// Heights of a region, in rows of `region.width` samples. The region must be valid.
+pub fn height(config: &TerrainConfig, features: &Features, region: Region) -> Vec<i32> {
+    let levels = region.levels(config);
     let draw = Draw::new(config);
     let base_spacing = config.sample_spacing() << config.levels();
-    let mut grid = base_lattice(config, features, window.patch, levels[0]);
+    let mut grid = base_lattice(config, features, levels[0]);
     for (level, pair) in levels.windows(2).enumerate() {
         let lattice = Fine {
             features,

@@ -5,15 +5,14 @@ use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, four_point, mean_of_two};
 use crate::terrain::lattice::{Injected, base_lattice, limited, world};
-use crate::terrain::window::{SMOOTH_RIM, Span, Window};
+use crate::terrain::window::{Region, SMOOTH_RIM, Span};
 
-/// Heights of a window, in rows of `window.width(config)` samples. The window must be valid, and `config.interpolation` must be
-/// `Smooth`.
-pub fn smooth(config: &TerrainConfig, features: &Features, window: Window) -> Vec<i32> {
-    let levels = window.levels(config);
+/// Heights of a region, in rows of `region.width` samples. The region must be valid, and `config.interpolation` must be `Smooth`.
+pub fn smooth(config: &TerrainConfig, features: &Features, region: Region) -> Vec<i32> {
+    let levels = region.levels(config);
     let draw = Draw::new(config);
     let base_spacing = config.sample_spacing() << config.levels();
-    let mut grid = base_lattice(config, features, window.patch, levels[0]);
+    let mut grid = base_lattice(config, features, levels[0]);
     for (level, pair) in (0..).zip(levels.windows(2)) {
         let spacing = base_spacing >> (level + 1);
         let step = Subdivision {

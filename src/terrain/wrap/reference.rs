@@ -3,8 +3,8 @@
 use crate::terrain::config::{PATCH_EDGE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject, mean_of_four};
-use crate::terrain::lattice::base_lattice;
-use crate::terrain::window::{Lattice, Window};
+use crate::terrain::lattice::corners;
+use crate::terrain::window::Lattice;
 
 /// Heights of one patch, in rows of `patch_size` samples.
 pub fn wrap(config: &TerrainConfig, features: &Features, patch: [i32; 2]) -> Vec<i32> {
@@ -18,9 +18,7 @@ pub fn wrap(config: &TerrainConfig, features: &Features, patch: [i32; 2]) -> Vec
         mode: features.mode,
     };
     let mut grid = vec![0; size * size];
-    let window = Window { patch, apron: 0 };
-    for (corner, height) in base_lattice(config, features, patch, window.levels(config)[0]).iter().enumerate()
-    {
+    for (corner, height) in corners(config, features, patch).iter().enumerate() {
         grid[corner / 2 * torus.last * size + corner % 2 * torus.last] = *height;
     }
     for level in 0..config.levels() {

@@ -51,8 +51,8 @@ fn prepared(
 
 fn reference(config: &TerrainConfig, features: &Features, window: Window) -> Vec<i32> {
     match (config.border, config.interpolation) {
-        (Border::Seamless, HeightInterpolation::Linear) => height(config, features, window),
-        (Border::Seamless, HeightInterpolation::Smooth) => smooth(config, features, window),
+        (Border::Seamless, HeightInterpolation::Linear) => height(config, features, window.region(config)),
+        (Border::Seamless, HeightInterpolation::Smooth) => smooth(config, features, window.region(config)),
         _ => wrap(config, features, window.patch),
     }
 }
