@@ -33,12 +33,17 @@ const MAX_MOTION: f32 = 4.0;
 // Decision word of each instance in the last frame; valid if `SelectView::is_next` is 1.
 // length: BLOCK * blocks
 @group(0) @binding(7) var<storage, read> decisions: array<u32>;
+// One bit per instance: whether its object is drawn in this view with this instance. Objects whose views draw different instances,
+// such as endless terrain, clear bits.
+// length: 2 * blocks
+@group(0) @binding(8) var<storage, read> shown: array<u32>;
 
 // Whether the view may see the instance, regardless of the instance's position.
-fn is_shown(instance: SceneInstance, object: LodObject) -> bool {
+fn is_shown(index: u32, instance: SceneInstance, object: LodObject) -> bool {
+    let is_in_view = ((shown[index / 32u] >> (index % 32u)) & 1u) != 0u;
     let is_alive = object_flags_shown(object.flags) != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
     let casts = view.casters == 0u || (instance.flags & INSTANCE_CASTS) != 0u;
-    return is_alive && casts && (instance_flags_mask(instance.flags) & view.mask) != 0u;
+    return is_in_view && is_alive && casts && (instance_flags_mask(instance.flags) & view.mask) != 0u;
 }
 
 // Whether a sphere reaches into the view volume. The center is relative to the corner of the view's cell.
@@ -111,7 +116,7 @@ fn metric_of(index: u32, object: LodObject) -> u32 {
     if view.is_first != 0u {
         before = Allowed(UNSEEN_ALLOWED, MAX_METRIC);
     }
-    if is_shown(instance, object) {
+    if is_shown(index, instance, object) {
         let axes = instance_axes(instance);
         let at = instance_position(instance, view.cell);
         let sphere = instance.bounding_sphere;

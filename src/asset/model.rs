@@ -109,6 +109,21 @@ impl Model {
             InputError::new("clip", name_or_index, bound)
         })
     }
+
+    /// Finds a bone by its name, or by its index in digits, and returns its index. If a bone's name is itself a number, the name
+    /// takes precedence.
+    ///
+    /// # Errors
+    /// [`InputError`] if there is no such bone. The error lists up to 20 bones.
+    pub fn bone(&self, name_or_index: &str) -> Result<usize, InputError> {
+        let bones = self.skeleton.bones();
+        let by_name = bones.iter().position(|bone| bone.name == name_or_index);
+        let by_index = || name_or_index.parse().ok().filter(|index| *index < bones.len());
+        by_name.or_else(by_index).ok_or_else(|| {
+            let bound = error::name_or_index("bones", bones.iter().map(|bone| bone.name.as_str()));
+            InputError::new("bone", name_or_index, bound)
+        })
+    }
 }
 
 /// Replaces the leading `item` of an error's path by `list[number]`. Errors with other paths stay unchanged.

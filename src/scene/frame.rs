@@ -414,7 +414,7 @@ impl Scene {
         }
         for (at, view) in views.iter_mut().enumerate() {
             let sides = self.objects.iter().map(|object| object.instances.sides());
-            let now = Moment { frame: self.frames, time: self.now, is_first: at == 0 };
+            let now = Moment { frame: self.frames, time: self.now, number: at };
             view.stage(&mut self.staged, (layout, &self.light), sides, now)?;
         }
         let ticks = |seconds: f64| (seconds * TICKS).round() as i64 as u32;

@@ -5,7 +5,8 @@ use crate::scene::Scene;
 use crate::scene::handles::ObjectId;
 use crate::scene::object::Object;
 use crate::scene::object_kind::ObjectKind;
-use crate::scene::terrain::{Terrain, TerrainDrawable, listed};
+use crate::scene::terrain::endless::Endless;
+use crate::scene::terrain::{EndlessStatistics, Terrain, TerrainDrawable, listed};
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
 use crate::{Error, InputError};
@@ -41,7 +42,37 @@ impl Scene {
                 return Err(InputError::new(path, value, "must be finite"));
             }
         }
-        Ok(terrain_of(&*self.object_at(terrain)?.kind)?.point_at(x, z))
+        let kind = &*self.object_at(terrain)?.kind;
+        match kind.downcast::<Endless>() {
+            Some(endless) => endless.point_at(x, z),
+            None => Ok(terrain_of(kind)?.point_at(x, z)),
+        }
+    }
+
+    /// The nodes of an endless terrain ([`TerrainSource::endless`](crate::scene::TerrainSource::endless)) after the last frame: how
+    /// many there are, and how much of the detail that the views need is there.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not in this scene or is not endless terrain.
+    ///
+    /// # Examples
+    ///
+    /// Waits until a new place is there in full detail.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Scene, View};
+    /// # fn example(scene: &mut Scene, land: ObjectId, view: &mut View) -> Result<(), relievo::Error> {
+    /// while scene.terrain_statistics(land)?.ready < 1.0 {
+    ///     let gpu = scene.gpu().clone();
+    ///     gpu.try_run("loading", |encoder| scene.record(encoder, &mut [&mut *view]))?;
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn terrain_statistics(&self, terrain: ObjectId) -> Result<EndlessStatistics, InputError> {
+        let endless = self.object_at(terrain)?.kind.downcast::<Endless>();
+        let refused = || InputError::new("terrain", "not endless", "must be made by TerrainSource::endless");
+        endless.map(Endless::statistics).ok_or_else(refused)
     }
 
     /// Sets which patches the fields of a terrain ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields))

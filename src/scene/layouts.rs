@@ -7,7 +7,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Group, Layouts, Uniform};
 use crate::scene::specialization::Program;
 use crate::shared::lod::instance::SceneInstance;
 use crate::shared::render::scene_instances::SceneObject;
-use crate::shared::render::scene_terrain::TerrainView;
+use crate::shared::render::scene_terrain::{TerrainNode, TerrainView};
 use crate::shared::render::scene_view::SceneView;
 
 /// Bind group layouts of all scene shaders. All shaders share the layout of group 0 (view), and all mesh shaders share the
@@ -122,8 +122,13 @@ impl SceneLayouts {
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn ground(&self, gpu: &Gpu, ground: &Uniform<TerrainView>) -> Result<Group, GpuError> {
-        scene_terrain::Group1 { ground }.bind(gpu, &self.terrain)
+    pub fn ground(
+        &self,
+        gpu: &Gpu,
+        ground: &Uniform<TerrainView>,
+        nodes: &Buffer<TerrainNode>,
+    ) -> Result<Group, GpuError> {
+        scene_terrain::Group1 { ground, nodes: nodes.slice() }.bind(gpu, &self.terrain)
     }
 
     /// Creates bind group 1 for an object of a caller-defined kind.

@@ -16,6 +16,7 @@ use crate::scene::chunk::Chunk;
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
+use crate::scene::placement::Placement;
 use crate::scene::quality::ErrorBudget;
 use crate::scene::ray::{Surface, SurfaceHit};
 use crate::scene::stage::Stage;
@@ -206,8 +207,9 @@ pub(super) trait KindInView: Debug + wgpu::WasmNotSendSync {
     /// Bind group 1 in this view.
     fn group(&self) -> &Group;
 
-    /// Stages the resources for a frame that is seen through `camera`.
-    fn stage(&self, staged: &mut Staged, camera: &Camera) -> Result<(), Error>;
+    /// Stages the resources for a frame that is seen through `camera`. `number` is the view's number in the frame. Returns one
+    /// bit per instance of the object, whether the view draws it; an empty list leaves all bits as they are, at first 1.
+    fn stage(&self, staged: &mut Staged, camera: &Camera, number: usize) -> Result<Vec<u32>, Error>;
 }
 
 /// A future that creates an object's resources on another device. Outside browsers, it may move to another thread.
@@ -260,17 +262,19 @@ pub(super) struct SeenBy<'a> {
 }
 
 /// Result of [`ObjectKind::provide`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Provided {
     /// The object's LOD bias, a factor of the allowed displacement. It is 1, or more if the device has no memory for
     /// the finer levels.
     pub lod_bias: f32,
     pub replaced: Replaced,
+    /// Instances that are placed anew, for kinds that create their instances themselves.
+    pub placed: Vec<(u32, Placement, BoundingSphere)>,
 }
 
 impl Default for Provided {
     fn default() -> Self {
-        Self { lod_bias: 1.0, replaced: Replaced::Nothing }
+        Self { lod_bias: 1.0, replaced: Replaced::Nothing, placed: Vec::new() }
     }
 }
 

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use crate::InputError;
 use crate::animation::RootMotion;
 use crate::animation::root_motion::Taken;
 use crate::animation::{Range as DistanceRange, Weights as PriorityWeights};
 use crate::asset::Model;
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::skinning::SkeletonTier;
-use crate::{InputError, error};
 
 /// Animation layers, root motion and level of detail of a character, for
 /// [`Scene::add_character_with`](crate::scene::Scene::add_character_with).
@@ -167,21 +167,6 @@ pub struct RootOptions<'a> {
     pub taken: Taken,
 }
 
-/// The index of a model's bone. `name_or_index` is the bone's name, or its index in digits. Names take precedence over
-/// indices.
-///
-/// # Errors
-/// [`InputError`] that lists up to 20 bones.
-pub(super) fn bone_of(model: &Model, name_or_index: &str) -> Result<usize, InputError> {
-    let bones = model.skeleton.bones();
-    let by_name = bones.iter().position(|bone| bone.name == name_or_index);
-    let by_index = || name_or_index.parse().ok().filter(|index| *index < bones.len());
-    by_name.or_else(by_index).ok_or_else(|| {
-        let names = bones.iter().map(|bone| bone.name.as_str());
-        InputError::new("bone", name_or_index, error::name_or_index("bones", names))
-    })
-}
-
 impl RootOptions<'_> {
     /// Extracts the root motion from all clips of a model. The model keeps clips that play in place. Returns one motion
     /// per clip.
@@ -189,7 +174,7 @@ impl RootOptions<'_> {
     /// # Errors
     /// As for [`RootMotion::extract`]; [`InputError`] for a bone that the model does not have.
     pub(super) fn take(&self, model: &mut Model) -> Result<Vec<RootMotion>, InputError> {
-        let bone = bone_of(model, self.bone)?;
+        let bone = model.bone(self.bone)?;
         let extracted =
             model.clips.iter().map(|clip| RootMotion::extract(&model.skeleton, clip, bone, self.taken));
         let (clips, motions) = extracted.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();

@@ -13,7 +13,7 @@ use crate::terrain::config::{Border, HeightInterpolation};
 use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
-use crate::terrain::height::{HeightBuffers, HeightPass, HeightScratch};
+use crate::terrain::height::{HeightBuffers, HeightJob, HeightPass, HeightScratch};
 use crate::terrain::hydraulic::HydraulicPass;
 use crate::terrain::levels::LevelPass;
 use crate::terrain::pad::{PadPass, Surround, surrounds};
@@ -21,7 +21,7 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::smooth::SmoothPass;
 use crate::terrain::thermal::ThermalPass;
 use crate::terrain::window::Lattice;
-use crate::terrain::window::{Window, Windows};
+use crate::terrain::window::{Regions, Window, Windows};
 use crate::terrain::wrap::WrapPass;
 use erosion::after;
 
@@ -129,6 +129,19 @@ impl Generator {
             progress(part.len());
         }
         Ok(parts)
+    }
+
+    /// Prepares the generation of regions of the plane before despiking and erosion. The recipe must be `seamless` and without features.
+    ///
+    /// # Errors
+    /// [`crate::InputError`] for regions coarser than the base lattice, and for buffers that are too short; [`GpuError`].
+    pub(crate) fn prepare_regions(
+        &self,
+        gpu: &Gpu,
+        regions: Regions,
+        buffers: HeightBuffers<'_>,
+    ) -> Result<HeightJob, Error> {
+        self.levels.prepare_regions(gpu, &self.recipe.config, regions, 0, buffers)
     }
 
     async fn windows(&self, gpu: &Gpu, patches: &[[i32; 2]], apron: u32) -> Result<Fields, Error> {

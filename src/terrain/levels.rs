@@ -1,7 +1,7 @@
 //! Levels of subdivision on the device, one dispatch per level. This is the common part of the passes that run
 //! `kernels/terrain/height.wgsl`, `smooth.wgsl` and `wrap.wgsl`.
 
-use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, Upload};
 use crate::shared::terrain::level::Level;
 use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::{FeatureIndex, Features};
@@ -232,7 +232,7 @@ impl HeightJob {
         windows.clone().try_for_each(|window| window.validate(&self.config))?;
         let regions: Vec<Region> = windows.map(|window| window.region(&self.config)).collect();
         let worlds: Vec<_> = patches.iter().map(|patch| Features::world_of(&self.config, *patch)).collect();
-        self.write(gpu, &regions, &worlds, features)
+        self.write(&mut &*gpu, &regions, &worlds, features)
     }
 
     /// Sets the regions, by their first samples, and features for the next recordings ([`Region::first`]). The number of regions
@@ -241,12 +241,25 @@ impl HeightJob {
     /// # Errors
     /// [`InputError`] for too many regions or regions out of bounds; [`GpuError::Limit`] for more features than the capacity.
     pub fn set_regions(&self, gpu: &Gpu, firsts: &[[i64; 2]], features: &Features) -> Result<(), Error> {
+        self.stage_regions(&mut &*gpu, firsts, features)
+    }
+
+    /// The same as [`HeightJob::set_regions`] with writes of any kind, such as staged ones.
+    ///
+    /// # Errors
+    /// Those of [`HeightJob::set_regions`].
+    pub(crate) fn stage_regions(
+        &self,
+        to: &mut impl Upload,
+        firsts: &[[i64; 2]],
+        features: &Features,
+    ) -> Result<(), Error> {
         self.check_count("firsts.len", firsts.len())?;
         let width = self.widths[self.widths.len() - 1];
         let region = |first: &[i64; 2]| Region { first: *first, width, coarser: self.coarser };
         let regions: Vec<Region> = firsts.iter().map(region).collect();
         regions.iter().try_for_each(|region| region.validate(&self.config))?;
-        self.write(gpu, &regions, &vec![[0, 0]; firsts.len()], features)
+        self.write(to, &regions, &vec![[0, 0]; firsts.len()], features)
     }
 
     fn check_count(&self, path: &str, count: usize) -> Result<(), InputError> {
@@ -257,7 +270,7 @@ impl HeightJob {
     /// Writes the base lattices, the origins and the features of regions. `worlds` are the worlds of their features.
     fn write(
         &self,
-        gpu: &Gpu,
+        to: &mut impl Upload,
         regions: &[Region],
         worlds: &[[i32; 2]],
         features: &Features,
@@ -275,11 +288,11 @@ impl HeightJob {
                 origins.push(spans.map(|span| span.first as i32));
             }
         }
-        self.base.write(gpu, &base)?;
+        to.elements(&self.base, 0, &base)?;
         for (buffer, origins) in self.origins.iter().zip(&origins) {
-            buffer.write(gpu, origins)?;
+            to.elements(buffer, 0, origins)?;
         }
-        self.features.write(gpu, regions.len() as u32, |level, window| {
+        self.features.write_to(to, regions.len() as u32, |level, window| {
             let spacing = self.config.sample_spacing() << (origins.len() - 1 - level + self.coarser as usize);
             let first = origins[level][window as usize].map(|first| i64::from(first) * spacing);
             let origin = if self.config.border == Border::Seamless { first } else { [0, 0] };

@@ -95,8 +95,8 @@ fn the_device_measures_as_the_cpu_does_and_draws() {
     let (gpu, model) = (gpu(), model());
     let pixels = 1.0;
     let options = LodOptions { distances: vec![900.0], ..options(GateMode::Bounded { pixels }) };
-    let quarter =
-        DrawnOptions { skinning: Detail::Bounded { pixels: 0.25 }, mesh: Detail::Bounded { pixels: 0.25 } };
+    let part = Detail::Bounded { pixels: 0.25 };
+    let quarter = DrawnOptions { skinning: part, mesh: part, ..DrawnOptions::default() };
     let cpu = animation(None, subject(&model), &options, &|_| ()).expect("measured");
     let on_gpu = animation(Some(&gpu), subject(&model), &options, &|_| ()).expect("measured");
     let [a, b] = [&cpu, &on_gpu].map(|report| report.distances[0]);
@@ -172,6 +172,6 @@ fn options_out_of_their_bounds_are_refused() {
     let tall = ParetoOptions { tall_pixels: 0.0, ..ParetoOptions::default() };
     assert_eq!(refused(pareto(subject(&model), &tall, &|_| ())), "tall_pixels");
     let few = LodOptions { crowd: CrowdOptions { frames: 3, ..of_options.crowd }, ..of_options };
-    let full = DrawnOptions { skinning: Detail::Full, mesh: Detail::Full };
+    let full = DrawnOptions { skinning: Detail::Full, mesh: Detail::Full, ..DrawnOptions::default() };
     assert_eq!(refused(drawn(&gpu(), subject(&model), &few, &full, &|_| ())), "frames");
 }

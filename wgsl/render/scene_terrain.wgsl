@@ -2,9 +2,11 @@
 // visible patch is one instance of an indexed mesh. Textures of zones are blended by height, slope and their own height maps.
 // Alternatively, the patches are drawn as a wireframe.
 // kind terrain:
+import package::wgsl::lod::allowed::{MAX_ALLOWED, camera_allows};
+import package::wgsl::lod::view::LodCamera;
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, triangle_surface};
 import package::wgsl::render::scene_shade::Surface;
-import package::wgsl::terrain::slope::slope_normal;
+import package::wgsl::terrain::slope::gradient_normal;
 import package::wgsl::terrain::texturing::{TRIPLANAR_PLANES, color_variation, triplanar_uv, triplanar_weight, triplanar_weights, varied};
 import package::wgsl::terrain::zones::{Zone, steepness, zone_blend, zone_blended, zone_color};
 
@@ -25,7 +27,33 @@ struct TerrainView {
     rest: vec3<f32>,
     // Number of the object, counted from 1.
     object: u32,
+    // Cameras that decide levels of detail; the first `camera_count` are valid.
+    cameras: array<LodCamera, 4>,
+    // Number of valid cameras; 0 for terrain of one resolution, which does not morph.
+    camera_count: u32,
+    // Factor of the displacement that the cameras allow: the fraction that levels of detail may use.
+    fraction: f32,
 }
+
+// How a node of endless terrain is drawn in a view. A limit is an allowed displacement in world units: where the view allows as much,
+// a vertex has moved onto the triangles of the next coarser level.
+struct TerrainNode {
+    // Limits of the vertices on the west, east, north and south borders; `STITCHED` beside a coarser node.
+    borders: vec4<f32>,
+    // Limit of all other vertices.
+    inner: f32,
+    // Padding, not read.
+    unused_a: f32,
+    // Padding, not read.
+    unused_b: f32,
+    // Padding, not read.
+    unused_c: f32,
+}
+
+// Limit of a border beside a coarser node: its odd vertices lie in even ones.
+const STITCHED: f32 = -1.0;
+// Fraction of its limit at which a vertex begins to move.
+const MORPH_START: f32 = 0.6;
 
 // Parameters that the patches of a terrain share.
 struct TerrainParams {
@@ -61,12 +89,14 @@ struct TerrainPatch {
     uv: vec2<f32>,
     // Index of the patch's window in `heights`.
     window: u32,
-    // Padding, not read.
-    unused: u32,
+    // Level of the node: its samples are 2^`level` of the terrain's samples apart. 0 except in endless terrain.
+    level: u32,
 }
 
 // Placement of the terrain in the view.
 @group(1) @binding(0) var<uniform> ground: TerrainView;
+// How each patch is drawn in the view. Read only if the terrain is endless.
+@group(1) @binding(1) var<storage, read> nodes: array<TerrainNode>;
 // Parameters of the terrain's patches.
 @group(2) @binding(0) var<uniform> terrain: TerrainParams;
 // Heights of all windows, row by row, in 1/65536 world units.
@@ -80,28 +110,87 @@ struct TerrainPatch {
 // Sampler of the zone textures.
 @group(2) @binding(5) var texture_sampler: sampler;
 
+// Height gradient of a patch at the sample `at`, from samples `reach` apart, as differences over two samples.
+fn gradient_of(center: u32, reach: u32) -> vec2<f32> {
+    let difference = vec2<f32>(vec2<i32>(
+        heights[center + reach] - heights[center - reach],
+        heights[center + reach * terrain.in_width] - heights[center - reach * terrain.in_width]));
+    return difference / f32(reach);
+}
+
+// Half of the way from an odd vertex of a patch to one of the two even vertices between which it lies in the next coarser level, in
+// samples. The diagonal of a cell runs from south-west to north-east. (0, 0) for an even vertex.
+fn coarser_half(at: vec2<u32>) -> vec2<i32> {
+    let odd = vec2<i32>(at & vec2<u32>(1u));
+    return vec2<i32>(odd.x, select(odd.y, -odd.y, odd.x != 0));
+}
+
+// The limit of a vertex of a node ([`TerrainNode`]), by the border on which it lies.
+fn limit_of(node: TerrainNode, at: vec2<u32>) -> f32 {
+    let last = terrain.size - 1u;
+    var limit = node.inner;
+    limit = select(limit, node.borders.w, at.y == last);
+    limit = select(limit, node.borders.z, at.y == 0u);
+    limit = select(limit, node.borders.y, at.x == last);
+    return select(limit, node.borders.x, at.x == 0u);
+}
+
+// The vertex as which a vertex of a node is drawn: beside a coarser node, an odd vertex is drawn as the even one before or after it.
+fn stitched(node: TerrainNode, at: vec2<u32>) -> vec2<u32> {
+    let last = terrain.size - 1u;
+    let odd = at & vec2<u32>(1u);
+    let is_before = (at == vec2<u32>(0u)) & (node.borders.xz == vec2<f32>(STITCHED));
+    let is_after = (at == vec2<u32>(last)) & (node.borders.yw == vec2<f32>(STITCHED));
+    let back = vec2<u32>(select(0u, odd.x, is_before.y), select(0u, odd.y, is_before.x));
+    let on = vec2<u32>(select(0u, odd.x, is_after.y), select(0u, odd.y, is_after.x));
+    return at - back + on;
+}
+
+// How far a vertex of a node has moved onto the triangles of the next coarser level, 0 to 1.
+fn morphed(limit: f32, position: vec3<f32>) -> f32 {
+    var allowed = MAX_ALLOWED;
+    for (var index = 0u; index < min(ground.camera_count, 4u); index++) {
+        allowed = min(allowed, camera_allows(ground.cameras[index], position, 0.0));
+    }
+    if limit == STITCHED {
+        return 1.0;
+    }
+    return clamp((ground.fraction * allowed / max(limit, 1e-30) - MORPH_START) / (1.0 - MORPH_START), 0.0, 1.0);
+}
+
 // Places a vertex of a patch. A sample gets bit-identical positions in all patches, so that patches that share an edge leave no
 // crack. Values of the result: barycentric coordinates (xyz: 1 at one corner of each triangle, 0 at the others), and the height
 // in world units (w).
 fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let patch_of = patches[instance];
-    let at = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
+    let is_node = ground.camera_count != 0u;
+    let node = nodes[select(0u, instance, is_node)];
+    let corner = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
+    let at = select(corner, stitched(node, corner), is_node);
     let margin = (terrain.in_width - terrain.size) / 2u;
     let row = patch_of.window * terrain.in_width + at.y + margin;
     let center = row * terrain.in_width + at.x + margin;
-    let gradient = vec2<i32>(
-        heights[center + 1u] - heights[center - 1u],
-        heights[center + terrain.in_width] - heights[center - terrain.in_width]);
-    let height = f32(heights[center]) / 65536.0;
-    let sample_index = vec2<f32>(patch_of.origin + vec2<i32>(at) - ground.base);
-    let position = ground.rest
-        + vec3<f32>(sample_index.x * terrain.spacing, height, sample_index.y * terrain.spacing);
+    let sample_index = vec2<f32>(patch_of.origin + (vec2<i32>(at) << vec2<u32>(patch_of.level)) - ground.base);
+    let sample = ground.rest + vec3<f32>(sample_index.x * terrain.spacing, 0.0, sample_index.y * terrain.spacing);
+    var height = f32(heights[center]) / 65536.0;
+    var gradient = gradient_of(center, 1u);
+    if is_node {
+        let factor = morphed(limit_of(node, at), sample + vec3<f32>(0.0, height, 0.0));
+        let half = coarser_half(at);
+        let one = u32(i32(center) + half.y * i32(terrain.in_width) + half.x);
+        let other = u32(i32(center) - half.y * i32(terrain.in_width) - half.x);
+        let coarser = 0.5 * (f32(heights[one]) / 65536.0 + f32(heights[other]) / 65536.0);
+        height = mix(height, coarser, factor);
+        gradient = mix(gradient, 0.5 * (gradient_of(one, 2u) + gradient_of(other, 2u)), factor);
+    }
     // Within a patch, all triangles give a vertex the same corner number, 0 to 2.
     var values = vec4<f32>(0.0, 0.0, 0.0, height);
-    values[(at.x + 2u * at.y) % 3u] = 1.0;
+    values[(corner.x + 2u * corner.y) % 3u] = 1.0;
+    let steps = f32(1u << patch_of.level);
     return SceneVertex(
-        position, slope_normal(gradient, terrain.run), vec4<f32>(1.0, 0.0, 0.0, 1.0),
-        vec4<f32>(patch_of.uv + vec2<f32>(at) * terrain.tiling, 0.0, 0.0), values, vec3<u32>(0u), 1.0);
+        sample + vec3<f32>(0.0, height, 0.0), gradient_normal(gradient, steps * terrain.run),
+        vec4<f32>(1.0, 0.0, 0.0, 1.0),
+        vec4<f32>(patch_of.uv + steps * vec2<f32>(at) * terrain.tiling, 0.0, 0.0), values, vec3<u32>(0u), 1.0);
 }
 
 // Position of a vertex in the last frame: its current position, because the ground does not move.

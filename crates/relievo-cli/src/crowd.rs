@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
+use relievo::scene::SkeletonTier;
 use relievo::{Error, InputError};
 use relievo_lab::measure::{GateName, Layout};
 
@@ -105,6 +106,10 @@ pub struct Crowd {
     /// For skip-period: weights of the priorities, as for `relievo priorities`.
     #[arg(long, value_name = "W,W,W,W,W,W|analyze", allow_hyphen_values = true)]
     weights: Option<String>,
+    /// The caller's priority of a bone, 0 to 1, such as hand_left=1; may be given several times. Other bones have 0.5. It is
+    /// the sixth term of skip-period; no gate skips a bone of priority 1.
+    #[arg(long, value_name = "BONE=P", value_parser = plan::priority)]
+    priority: Vec<(String, f32)>,
     /// Distances in units between which Ω falls from 1 to 0.
     #[arg(long, value_name = "MIN,MAX", default_value = "200,1700", allow_hyphen_values = true,
           value_parser = pair::<f32>("range", ',', "must be two distances, such as 200,1700"))]
@@ -148,6 +153,10 @@ pub struct Crowd {
     /// once (bounded) or move into each other (geomorph). Default: full; with --scene bounded:0.5.
     #[arg(long, value_name = "full|bounded:PIXELS|geomorph:PIXELS")]
     mesh: Option<String>,
+    /// Reduced skeletons of the crowd that is drawn, at most 3: fractions of the bones to keep, descending. In a rigid one, each
+    /// vertex follows one bone, such as 0.5,0.25,rigid:0.1.
+    #[arg(long, value_name = "F[,F…]", value_delimiter = ',', value_parser = plan::tier)]
+    tiers: Vec<SkeletonTier>,
     /// The folder to write to.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,

@@ -10,7 +10,7 @@ use crate::animation::{
 };
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::{Affine, Clip, Model, Skeleton};
-use crate::scene::options::{BoneGate, CharacterOptions, InfluenceLod, bone_of};
+use crate::scene::options::{BoneGate, CharacterOptions, InfluenceLod};
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::tiers::{MAX_TIERS, Tiers};
 use crate::{Error, InputError};
@@ -97,7 +97,7 @@ fn user_priorities(priorities: &BTreeMap<&str, f32>, model: &Model) -> Result<Ve
     let mut user = vec![USER_DEFAULT; model.skeleton.len()];
     for (name, priority) in priorities {
         let path = format!("options.priorities.{name}");
-        let bone = bone_of(model, name).map_err(|error| InputError { path: path.clone(), ..error })?;
+        let bone = model.bone(name).map_err(|error| InputError { path: path.clone(), ..error })?;
         InputError::check_within(path, *priority, 0.0..=1.0)?;
         user[bone] = *priority;
     }

@@ -20,7 +20,7 @@ use crate::gpu::Gpu;
 use crate::scene::instances::Changed;
 use crate::scene::mesh;
 use crate::scene::object_kind::{Fitted, Replaced};
-use crate::scene::options::{CharacterOptions, InfluenceLod, bone_of};
+use crate::scene::options::{CharacterOptions, InfluenceLod};
 use crate::scene::paging::Held;
 use crate::scene::playing::Playing;
 use crate::shared::lod::assign::AssignParams;
@@ -86,7 +86,7 @@ impl Character {
         let spheres: Vec<_> =
             (0..model.clips.len()).map(|clip| BoundingSphere::in_clip(model, clip)).collect();
         let Detail { tiers, set, gate, assign } = Detail::new(options, model, spheres[0].radius)?;
-        let bone = |name: &str| bone_of(model, name);
+        let bone = |name: &str| model.bone(name);
         let layers = CharacterLayer::of_masks(model, &options.layers, bone, capacity)?;
         let masks = layers.iter().map(|layer| layer.mask.clone()).collect();
         let radii = tiers.bone_radii[..model.skeleton.len()].to_vec();

@@ -10,7 +10,6 @@ use crate::animation::{Instance, ModelMatrices, Pose};
 use crate::asset::{Model, Transform};
 use crate::gpu::Buffer;
 use crate::scene::matrices::{CharacterMatrices, affine_of};
-use crate::scene::options::bone_of;
 use crate::scene::placement::ClipTime;
 use crate::scene::playing::Playing;
 use crate::scene::ray::Surface;
@@ -26,7 +25,7 @@ use crate::skinning::vertex::Blend;
 impl Character {
     /// The index of a bone that is given by its name or its index in digits.
     pub fn bone(&self, name_or_index: &str) -> Result<usize, InputError> {
-        bone_of(&self.merged.model, name_or_index)
+        self.merged.model.bone(name_or_index)
     }
 
     /// The root motion of an instance between two scene times in seconds.

@@ -24,7 +24,7 @@ impl Character {
         };
         // After an error in an earlier frame, `replaced` still holds that frame's replacements.
         let replaced = std::mem::replace(&mut self.replaced, Replaced::Nothing);
-        Ok(Provided { lod_bias, replaced })
+        Ok(Provided { lod_bias, replaced, ..Provided::default() })
     }
 
     /// Allocates pages for visible instances. Returns the LOD bias, which is above 1 if memory is short.

@@ -12,6 +12,7 @@ use crate::lod::assign::AssignPass;
 use crate::lod::{SceneInstance, SelectView};
 use crate::scene::chunk::{Chunk, common};
 use crate::scene::handles::{ObjectId, Slots};
+use crate::scene::instances;
 use crate::scene::layout::{Counted, CountedObject, Layout, ObjectRange};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object_kind::{Fitted, Provided, Replaced, SeenBy};
@@ -32,7 +33,14 @@ impl Object {
         let all = Chunk::new(0..self.instances.capacity(), Vec::new());
         let lod = self.biased_lod_object(&all, 1.0);
         let seen = SeenBy { views, object: &lod, instances: self.instances.all(), now };
-        let Provided { lod_bias, replaced } = self.kind.provide(gpu, layouts, &seen, &mut self.chunks)?;
+        let Provided { lod_bias, replaced, placed } =
+            self.kind.provide(gpu, layouts, &seen, &mut self.chunks)?;
+        for (index, placement, sphere) in placed {
+            self.instances.change(index, |instance| {
+                instances::place(instance, &placement);
+                instances::bound(instance, &sphere);
+            });
+        }
         self.is_rebound |= replaced == Replaced::Buffers;
         self.is_retuned |= lod_bias != self.lod_bias;
         self.lod_bias = lod_bias;

@@ -112,8 +112,12 @@ impl Object {
         layouts: &SceneLayouts,
         source: &TerrainSource,
     ) -> Result<Self, Error> {
-        let (terrain, instances, drawn) = terrain::made(gpu, layouts, source).await?;
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
+        if let Some(endless) = source.endless_recipe()? {
+            let (terrain, instances, drawn) = terrain::endless::made(gpu, layouts, source, endless)?;
+            return Ok(Self::new(terrain, (instances, sphere), (vec![0.0], 1.0), drawn));
+        }
+        let (terrain, instances, drawn) = terrain::made(gpu, layouts, source).await?;
         Ok(Self::new(terrain, (instances, sphere), (vec![0.0], 1.0), drawn))
     }
 

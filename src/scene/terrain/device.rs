@@ -133,7 +133,7 @@ pub(in crate::scene) fn listed(config: &TerrainConfig, patches: &[[i32; 2]]) -> 
         origin: patch.map(|index| index.wrapping_mul(edge)),
         uv: patch.map(|index| (f64::from(index) * tiles).rem_euclid(f64::from(TILES_PERIOD)) as f32),
         window,
-        unused: 0,
+        level: 0,
     };
     (0..).zip(patches).map(patch).collect()
 }

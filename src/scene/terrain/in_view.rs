@@ -3,7 +3,8 @@
 use glam::{DVec3, IVec2, Vec3};
 
 use crate::Error;
-use crate::gpu::{Gpu, GpuError, Group, Staged, Uniform, Upload as _};
+use crate::gpu::{Buffer, Gpu, GpuError, Group, Staged, Uniform, Upload as _};
+use crate::lod::SelectView;
 use crate::scene::camera::Camera;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object_kind::KindInView;
@@ -26,9 +27,9 @@ impl TerrainInView {
     /// Creates a terrain's resources for a view. `spacing` is the distance between samples in world units, and `object`
     /// is the number of the terrain's object.
     pub fn new(gpu: &Gpu, layouts: &SceneLayouts, spacing: f64, object: u32) -> Result<Self, GpuError> {
-        let nowhere = TerrainView { base: IVec2::ZERO, rest: Vec3::ZERO, object };
-        let uniform = Uniform::new(gpu, "terrain in a view", &nowhere)?;
-        Ok(Self { group: layouts.ground(gpu, &uniform)?, uniform, spacing, object })
+        let uniform = Uniform::new(gpu, "terrain in a view", &nowhere(object))?;
+        let nodes = Buffer::new(gpu, "nodes in a view", 1)?;
+        Ok(Self { group: layouts.ground(gpu, &uniform, &nodes)?, uniform, spacing, object })
     }
 }
 
@@ -37,14 +38,24 @@ impl KindInView for TerrainInView {
         &self.group
     }
 
-    /// Stages the sample nearest to the eye. Shaders count samples from there, so that `f32` stays precise near the
-    /// eye.
-    fn stage(&self, staged: &mut Staged, camera: &Camera) -> Result<(), Error> {
-        let (spacing, corner, eye) = (self.spacing, Placement::corner(camera.cell), camera.world());
-        // The cast to `i32` saturates. Samples that far from the origin are drawn imprecisely anyway.
-        let base = IVec2::new((eye.x / spacing).round() as i32, (eye.z / spacing).round() as i32);
-        let place = DVec3::new(f64::from(base.x) * spacing, 0.0, f64::from(base.y) * spacing);
-        let view = TerrainView { base, rest: (place - corner).as_vec3(), object: self.object };
-        Ok(staged.uniform(&self.uniform, &view)?)
+    fn stage(&self, staged: &mut Staged, camera: &Camera, _: usize) -> Result<Vec<u32>, Error> {
+        staged.uniform(&self.uniform, &seen_from(camera, self.spacing, self.object))?;
+        Ok(Vec::new())
     }
+}
+
+/// A terrain in a view that is not set yet. `object` is the number of the terrain's object.
+pub(crate) fn nowhere(object: u32) -> TerrainView {
+    let cameras = SelectView::nothing().cameras;
+    TerrainView { base: IVec2::ZERO, rest: Vec3::ZERO, object, cameras, camera_count: 0, fraction: 0.0 }
+}
+
+/// A terrain as a camera sees it, without levels of detail. Shaders count samples from the one nearest to the eye, so that `f32`
+/// stays precise near the eye. Samples are `spacing` world units apart.
+pub(super) fn seen_from(camera: &Camera, spacing: f64, object: u32) -> TerrainView {
+    let (corner, eye) = (Placement::corner(camera.cell), camera.world());
+    // The cast to `i32` saturates. Samples that far from the origin are drawn imprecisely anyway.
+    let base = IVec2::new((eye.x / spacing).round() as i32, (eye.z / spacing).round() as i32);
+    let place = DVec3::new(f64::from(base.x) * spacing, 0.0, f64::from(base.y) * spacing);
+    TerrainView { base, rest: (place - corner).as_vec3(), ..nowhere(object) }
 }

@@ -3,6 +3,7 @@
 
 mod device;
 mod drawable;
+pub(in crate::scene) mod endless;
 mod in_view;
 mod kind;
 mod morphing;
@@ -24,6 +25,9 @@ pub(super) use device::{listed, made};
 pub(crate) use drawable::TerrainDrawable;
 #[cfg(test)]
 pub(crate) use drawable::{TerrainGeometry, patch_indices};
+pub use endless::{EndlessLimits, EndlessStatistics};
+#[cfg(test)]
+pub(crate) use in_view::nowhere;
 use morphing::Morphing;
 pub use source::TerrainSource;
 use source::check_patches;

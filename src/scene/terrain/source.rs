@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::endless::EndlessLimits;
 use crate::InputError;
 use crate::scene::options::TerrainStyle;
 use crate::terrain::blend::Shading;
@@ -33,12 +34,49 @@ pub struct TerrainSource {
     pub(super) style: TerrainStyle,
     /// The recipe towards which the heights are blended, and the progress of the blend.
     pub(super) target: Option<(Box<Recipe>, Morph)>,
+    /// Extent and memory of endless terrain; `None` for a list of patches.
+    pub(super) endless: Option<EndlessLimits>,
 }
 
 impl TerrainSource {
     /// Terrain that shows patch (0, 0) of a configuration, with the textures that the zones name.
     pub fn new(config: TerrainConfig) -> Self {
         Recipe::new(config).into()
+    }
+
+    /// Terrain without end: around each camera, as far as the limits say ([`TerrainSource::with_limits`]), at the resolution that the
+    /// views need.
+    ///
+    /// The ground is divided into nodes of `patch_size` samples. A node of level l has every 2^l-th sample and covers 4^l patches.
+    /// The levels reach from 0 to `coarse_levels`. The scene makes nodes on the device as views need them, nearest first, at most
+    /// [`EndlessLimits::nodes_per_frame`] in a frame; until then coarser nodes are drawn. Each view draws nodes whose vertices lie
+    /// within [`Quality::pixels`](crate::scene::Quality::pixels) of the terrain's finest heights. Between two levels, vertices move
+    /// continuously. [`Scene::terrain_statistics`](crate::scene::Scene::terrain_statistics) tells how much of the detail is there.
+    ///
+    /// The configuration must be `seamless`. Features, despiking, erosion and a target are not possible. [`Scene::ground`] and
+    /// [`Scene::pick`] answer for the finest heights everywhere, whatever is drawn; the host makes those patches when it is asked.
+    ///
+    /// [`Scene::ground`]: crate::scene::Scene::ground
+    /// [`Scene::pick`]: crate::scene::Scene::pick
+    ///
+    /// ```no_run
+    /// use relievo::scene::{EndlessLimits, Scene, TerrainConfig, TerrainSource};
+    ///
+    /// # fn load(scene: &mut Scene) -> Result<(), relievo::Error> {
+    /// let config = TerrainConfig { coarse_levels: 8, ..TerrainConfig::new(65, 900.0, "any text")? };
+    /// let limits = EndlessLimits { view_distance: Some(12_000.0), ..EndlessLimits::default() };
+    /// let land = scene.add_terrain(&TerrainSource::endless(config).with_limits(limits))?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn endless(config: TerrainConfig) -> Self {
+        Self { endless: Some(EndlessLimits::default()), ..Self::new(config) }
+    }
+
+    /// Sets extent and memory of endless terrain ([`TerrainSource::endless`]). Terrain from a list of patches becomes endless.
+    #[must_use]
+    pub fn with_limits(self, limits: EndlessLimits) -> Self {
+        Self { endless: Some(limits), ..self }
     }
 
     /// Terrain from heights that the caller's passes have computed or will compute. The first field shows the first
@@ -74,7 +112,7 @@ impl TerrainSource {
 
     fn of(origin: Origin) -> Self {
         let (shading, style) = (Shading::default(), TerrainStyle::Textured);
-        Self { origin, patches: vec![[0, 0]], textures: None, shading, style, target: None }
+        Self { origin, patches: vec![[0, 0]], textures: None, shading, style, target: None, endless: None }
     }
 
     /// Replaces the patches to show. Each patch is given by its column, counted to the east, and its row, counted to
@@ -123,6 +161,21 @@ impl TerrainSource {
         check_target(self.config(), &target.config).map_err(below)?;
         target.validate(&self.patches, 1).map_err(below)?;
         morph.validate()
+    }
+
+    /// The recipe and the limits of endless terrain; `None` for a list of patches.
+    ///
+    /// # Errors
+    /// [`InputError`] for endless terrain from fields or with a target.
+    pub(in crate::scene) fn endless_recipe(&self) -> Result<Option<(&Recipe, EndlessLimits)>, InputError> {
+        let Some(limits) = self.endless else { return Ok(None) };
+        let refused =
+            |field: &str| Err(InputError::new(field, "given", "must not be given where terrain is endless"));
+        match (&self.origin, &self.target) {
+            (Origin::Fields { .. }, _) => refused("fields"),
+            (_, Some(_)) => refused("target"),
+            (Origin::Recipe(recipe), None) => Ok(Some((recipe, limits))),
+        }
     }
 
     /// The terrain's configuration.

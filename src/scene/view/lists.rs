@@ -58,6 +58,10 @@ pub(crate) struct ViewLists {
     map: Option<wgpu::TextureView>,
     /// For each object, the resources that its kind keeps per view.
     pub(in crate::scene) in_view: Vec<Option<Box<dyn KindInView>>>,
+    /// For each object, the index of its first instance in the scene's instance buffers.
+    pub(super) firsts: Vec<u32>,
+    /// One bit per instance of the scene: whether the view may draw it.
+    pub(super) shown: Buffer<u32>,
     /// Draws of transparent surfaces; `None` if the scene has none.
     pub sorted: Option<SortedLists>,
     /// The instances with transparent surfaces, sorted from back to front.
@@ -95,6 +99,7 @@ impl ViewLists {
         let placements = Buffer::new(gpu, "placements in the view", frames * instances)?;
         let lists = Buffer::new(gpu, "lists of instances", layout.list_words as usize)?;
         let arguments = Buffer::from_slice(gpu, "draws", &layout.draws)?;
+        let shown = Buffer::from_slice(gpu, "instances shown", &vec![u32::MAX; layout.instances.len() / 32])?;
         let buffers = SelectBuffers {
             view,
             objects: &layout.objects,
@@ -104,6 +109,7 @@ impl ViewLists {
             metrics: &metrics,
             placements: &placements,
             decisions: &decisions,
+            shown: &shown,
         };
         let select = passes.select.prepare(gpu, buffers)?;
         let buffers = DecideBuffers {
@@ -144,6 +150,8 @@ impl ViewLists {
             group,
             map: map.cloned(),
             in_view: in_view.collect::<Result<_, Error>>()?,
+            firsts: objects.iter().map(|object| object.chunks[0].range.first).collect(),
+            shown,
             order: Vec::new(),
             select,
             decide,

@@ -139,8 +139,8 @@ pub(super) struct Moment {
     pub frame: u64,
     /// The scene's time in seconds.
     pub time: f64,
-    /// Whether the view is the first one that the frame records.
-    pub is_first: bool,
+    /// Number of the view among those that the frame records.
+    pub number: usize,
 }
 
 impl View {
@@ -362,7 +362,8 @@ impl View {
         sides: impl Iterator<Item = [bool; 2]>,
         now: Moment,
     ) -> Result<(), Error> {
-        let Moment { frame, time, is_first } = now;
+        let Moment { frame, time, number } = now;
+        let is_first = number == 0;
         let last = self.last.filter(|last| last.frame + 1 == frame && !last.is_cut);
         let (camera, mut view) = self.select_view(layout.blocks, is_first)?;
         self.stage_budget(staged, (layout.blocks, layout.triangle_unit))?;
@@ -381,8 +382,12 @@ impl View {
                 self.dither_offset(frame),
             ),
         )?;
-        for in_view in self.lists.iter().flat_map(|lists| lists.in_view.iter().flatten()) {
-            in_view.stage(staged, &camera)?;
+        if let Some(lists) = &self.lists {
+            for (in_view, first) in lists.in_view.iter().zip(&lists.firsts) {
+                let Some(in_view) = in_view else { continue };
+                let shown = in_view.stage(staged, &camera, number)?;
+                staged.elements(&lists.shown, *first as usize / 32, &shown)?;
+            }
         }
         let recorded = self.recorded.get_or_insert_default();
         recorded.mirrors = camera.is_mirrored();

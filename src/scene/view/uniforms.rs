@@ -71,7 +71,7 @@ pub(super) fn clip_from_cell(camera: &Camera, cell: [i32; 3]) -> DMat4 {
 
 impl SelectView {
     /// The uniform of a view that sees no instance.
-    pub(super) fn nothing() -> Self {
+    pub(in crate::scene) fn nothing() -> Self {
         let camera = LodCamera {
             eye: Vec3::ZERO,
             focal: 1.0,

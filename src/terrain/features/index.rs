@@ -2,7 +2,7 @@
 //! index also stores the position of the word's first value (`wgsl/terrain/features.wgsl`).
 
 use crate::gpu::bind::Slice;
-use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::gpu::{Buffer, Gpu, GpuError, Upload};
 
 /// One grid of the feature index: one bit per lattice point of each window.
 pub use crate::shared::terrain::features::FeatureGrid;
@@ -60,6 +60,19 @@ impl FeatureIndex {
         windows: u32,
         points: impl Fn(usize, u32) -> Vec<(u32, u32, i32)>,
     ) -> Result<(), GpuError> {
+        self.write_to(&mut &*gpu, windows, points)
+    }
+
+    /// The same as [`FeatureIndex::write`] with writes of any kind, such as staged ones.
+    ///
+    /// # Errors
+    /// Those of [`FeatureIndex::write`].
+    pub(crate) fn write_to(
+        &self,
+        to: &mut impl Upload,
+        windows: u32,
+        points: impl Fn(usize, u32) -> Vec<(u32, u32, i32)>,
+    ) -> Result<(), GpuError> {
         if self.words.is_empty() {
             return Ok(());
         }
@@ -87,8 +100,8 @@ impl FeatureIndex {
                 remedy: "prepare the job with more room for features",
             });
         }
-        self.words.write(gpu, &words)?;
-        self.heights.write(gpu, &heights)
+        to.elements(&self.words, 0, &words)?;
+        to.elements(&self.heights, 0, &heights)
     }
 
     /// Grid number `index`, in the order of the widths given to `new`; an empty grid if there is no such grid.

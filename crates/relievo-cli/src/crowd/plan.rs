@@ -3,6 +3,7 @@
 use relievo::asset::Model;
 use relievo::ops::animation::priority::Weights;
 use relievo::ops::animation::{Range, Wrap};
+use relievo::scene::SkeletonTier;
 use relievo::{Error, InputError};
 use relievo_lab::measure::{
     CrowdOptions, Detail, DrawnOptions, GateMode, GateName, LodOptions, ParetoOptions, Subject,
@@ -37,6 +38,7 @@ impl Plan {
             range,
             frames: a.frames,
             rate: a.rate,
+            priorities: a.priority.iter().cloned().collect(),
         };
         let distances = if a.distance.is_empty() { crowd.sweep() } else { a.distance.clone() };
         let mut lod = LodOptions { distances, crowd: crowd.clone(), gate: gate(a)? };
@@ -92,8 +94,9 @@ fn drawn(a: &Crowd) -> Result<DrawnOptions, InputError> {
             return Err(InputError::new("backend", "cpu", "must be gpu, as the crowd is drawn"));
         }
     } else {
+        let (skinning, mesh, tiers) = (a.skinning.is_some(), a.mesh.is_some(), !a.tiers.is_empty());
         let given =
-            [("skinning", &a.skinning), ("mesh", &a.mesh)].into_iter().find(|(_, given)| given.is_some());
+            [("skinning", skinning), ("mesh", mesh), ("tiers", tiers)].into_iter().find(|(_, given)| *given);
         if let Some((field, _)) = given {
             let bound = "must come with --image or --scene, which draw the crowd";
             return Err(InputError::new(field, "given", bound));
@@ -102,7 +105,28 @@ fn drawn(a: &Crowd) -> Result<DrawnOptions, InputError> {
     let usual = if a.scene { "bounded:0.5" } else { "full" };
     let [skinning, mesh] = [("skinning", &a.skinning), ("mesh", &a.mesh)]
         .map(|(field, given)| detail(field, given.as_deref().unwrap_or(usual)));
-    Ok(DrawnOptions { skinning: skinning?, mesh: mesh? })
+    Ok(DrawnOptions { skinning: skinning?, mesh: mesh?, tiers: a.tiers.clone() })
+}
+
+/// Parses one `--priority`.
+pub fn priority(text: &str) -> Result<(String, f32), InputError> {
+    let (bone, number) = text.rsplit_once('=').unwrap_or((text, ""));
+    let within = number.trim().parse().ok().filter(|priority| (0.0..=1.0).contains(priority));
+    let refused =
+        || InputError::new("priority", text, "must be a bone and a number from 0 to 1, such as hand_left=1");
+    Ok((bone.trim().to_owned(), within.ok_or_else(refused)?))
+}
+
+/// Parses one of the list `--tiers`.
+pub fn tier(text: &str) -> Result<SkeletonTier, InputError> {
+    let (is_rigid, number) = match text.trim().strip_prefix("rigid:") {
+        Some(number) => (true, number),
+        None => (false, text),
+    };
+    let within = number.trim().parse().ok().filter(|bones| *bones > 0.0 && *bones < 1.0);
+    let refused =
+        || InputError::new("tiers", text, "must be fractions between 0 and 1, such as 0.5,0.25,rigid:0.1");
+    Ok(SkeletonTier { bones: within.ok_or_else(refused)?, is_rigid })
 }
 
 /// Parses `--skinning` or `--mesh`.

@@ -144,6 +144,29 @@ fn scenes_compare_six_ways() {
     }
 }
 
+/// Without the option a hand far away is not sampled; with it, it is, in the ways that have the gate. Reduced skeletons sample fewer
+/// bones where all are.
+#[test]
+fn priorities_and_skeletons_of_a_crowd() {
+    let gate = ["--gate", "uniform", "--scene", "--mesh", "full", "--skinning", "full"];
+    let ([_, plain], ..) = rows("scene.json", &gate);
+    let ([_, kept], out, _folder) = rows("scene.json", &[&gate[..], &["--priority", "hand_left=1"]].concat());
+    let bones = |row: &Value, way: &str| number(&row[way]["bones"]);
+    assert_eq!((bones(&plain, "animation"), bones(&kept, "animation")), (0.0, 4.0), "{kept}");
+    assert_eq!((bones(&plain, "off"), bones(&kept, "both")), (bones(&kept, "off"), 4.0));
+    let text = std::fs::read(out.join("scene.json")).expect("written");
+    let report: Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(report["priorities"], json!({"hand_left": 1.0}));
+    let full = ["--gate", "bounded", "--pixels", "8", "--image", "--tiers", "0.5,rigid:0.1"];
+    let ([_, tiers], out, _folder) = rows("report.json", &full);
+    let ([_, whole], ..) = rows("report.json", &full[..5]);
+    assert!(number(&tiers["bones"]) < number(&whole["bones"]), "{tiers} {whole}");
+    assert!(off(&tiers)[0] <= 8.0, "{tiers}");
+    let text = std::fs::read(out.join("report.json")).expect("written");
+    let report: Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(report["tiers"], json!([{"bones": 0.5, "rigid": false}, {"bones": 0.1_f32, "rigid": true}]));
+}
+
 /// A triangle that a morph target makes ten times as high in two seconds; the one bone that moves has no vertices.
 fn growing() -> Vec<u8> {
     let mut scene = Scene::of_two_bones();
@@ -215,6 +238,12 @@ fn bad_input_is_refused_and_nothing_written() {
         (&["--scene", "--skinning", "fade:1"], &["skinning", "fade:1", "truncate:K or fade"]),
         (&["--image", "--skinning", "bounded:-1"], &["skinning", "bounded:-1", "1e6"]),
         (&["--mesh", "full"], &["mesh", "--image"]),
+        (&["--tiers", "0.5"], &["tiers", "--image"]),
+        (&["--image", "--tiers", "0.5,2"], &["tiers", "2", "between 0 and 1"]),
+        (&["--image", "--tiers", "0.25,0.5"], &["options.tiers", "0.5"]),
+        (&["--priority", "hand_left"], &["priority", "hand_left", "0 to 1"]),
+        (&["--priority", "hand_left=2"], &["priority", "hand_left=2", "0 to 1"]),
+        (&["--priority", "wing=1"], &["priorities.wing", "wing", "must be one of"]),
         (&["--image", "--mesh", "half"], &["mesh", "half", "bounded:PIXELS"]),
         (&["--scene", "--mesh", "bounded:-1"], &["mesh", "bounded:-1", "1e6"]),
         (&["--image", "--scene"], &["--image", "--scene"]),

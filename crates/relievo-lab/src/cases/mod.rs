@@ -53,6 +53,7 @@ pub static OPERATIONS: &[Operation] = operations![
     terrain / despike,
     terrain / thermal,
     terrain / hydraulic,
+    terrain / node,
     terrain / normals,
     terrain / morph,
     terrain / blend,

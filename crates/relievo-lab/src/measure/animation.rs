@@ -16,7 +16,7 @@ use crate::measure::gates::GateMode;
 use crate::measure::options::{Detail, DrawnOptions, LodOptions, Subject};
 use crate::measure::play::{Found, StageTimes, play};
 use crate::measure::progress::{Listener, Steps};
-use crate::measure::setting::Setting;
+use crate::measure::setting::{Setting, TierReport};
 use crate::measure::stage::{Stage, animated_bones, mean_omega};
 
 /// What a gate saves and what it costs, by distance.
@@ -35,6 +35,9 @@ pub struct AnimationReport {
     /// The triangles that meshes have; only of a crowd that is drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<Detail>,
+    /// The reduced skeletons of the crowd that is drawn.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tiers: Vec<TierReport>,
     /// The measurements, one row per distance.
     pub distances: Vec<AnimationRow>,
 }
@@ -127,6 +130,7 @@ pub fn drawn(
     let stage = Stage::new(subject, &options.crowd, true)?;
     let mut report = measured(Some(gpu), &stage, options, listener)?;
     (report.skinning, report.mesh) = (Some(drawn.skinning), Some(drawn.mesh));
+    report.tiers = TierReport::of(drawn);
     let steps = steps(options, "drawing", listener);
     let mut pictures = Vec::with_capacity(report.distances.len());
     for row in &mut report.distances {
@@ -170,6 +174,7 @@ fn measured(
         animated_bones,
         skinning: None,
         mesh: None,
+        tiers: Vec::new(),
         distances,
     })
 }

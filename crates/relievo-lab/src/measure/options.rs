@@ -1,10 +1,12 @@
 //! The options of all measurements, with their ranges.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use relievo::InputError;
 use relievo::asset::{Clip, Model};
 use relievo::ops::animation::{Range, Weights};
+use relievo::scene::SkeletonTier;
 use serde::{Serialize, Serializer};
 
 use crate::measure::bounds::check;
@@ -93,6 +95,9 @@ pub struct CrowdOptions {
     pub frames: u32,
     /// Frames per second, in 1..=1000. Default: 60.
     pub rate: f64,
+    /// The caller's priority of bones by name or index, 0 to 1; all other bones have 0.5. No gate skips a bone of priority 1
+    /// ([`CharacterOptions::priorities`](relievo::scene::CharacterOptions::priorities)). Default: none.
+    pub priorities: BTreeMap<String, f32>,
 }
 
 impl Default for CrowdOptions {
@@ -106,6 +111,7 @@ impl Default for CrowdOptions {
             range: Range { min: 200.0, max: 1700.0 },
             frames: 240,
             rate: 60.0,
+            priorities: BTreeMap::new(),
         }
     }
 }
@@ -121,6 +127,9 @@ impl CrowdOptions {
         check("rate", self.rate, 1.0..=1000.0)?;
         check("instances", self.instances as f64, 1.0..=1e5)?;
         check("frames", f64::from(self.frames), 1.0..=f64::from(MAX_FRAMES))?;
+        for (bone, priority) in &self.priorities {
+            check(&format!("priorities.{bone}"), (*priority).into(), 0.0..=1.0)?;
+        }
         self.range.validate()
     }
 
@@ -225,18 +234,21 @@ impl Serialize for Detail {
 
 /// How a crowd is skinned and drawn. Its scene permits the sum of these pixels and those of the gate, and divides them by
 /// [`ErrorBudget`](relievo::scene::ErrorBudget) in proportion.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct DrawnOptions {
     /// The influences that vertices follow; no geomorph. Default: those that half a pixel permits.
     pub skinning: Detail,
     /// The triangles that meshes have. Default: those that half a pixel permits.
     pub mesh: Detail,
+    /// Reduced skeletons, used wherever the gate is ([`CharacterOptions::tiers`](relievo::scene::CharacterOptions::tiers)).
+    /// Default: none.
+    pub tiers: Vec<SkeletonTier>,
 }
 
 impl Default for DrawnOptions {
     fn default() -> Self {
         let half = Detail::Bounded { pixels: 0.5 };
-        Self { skinning: half, mesh: half }
+        Self { skinning: half, mesh: half, tiers: Vec::new() }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::measure::drawing::{Drawing, DrawnModel, FrameCost, Parts, check_frame
 use crate::measure::levels::LevelReport;
 use crate::measure::options::{Detail, DrawnOptions, LodOptions, Subject};
 use crate::measure::progress::Listener;
-use crate::measure::setting::Setting;
+use crate::measure::setting::{Setting, TierReport};
 use crate::measure::stage::Stage;
 
 /// What level of detail saves of whole frames, by distance.
@@ -24,6 +24,9 @@ pub struct SceneReport {
     pub skinning: Detail,
     /// The triangles that meshes have.
     pub mesh: Detail,
+    /// The reduced skeletons that were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tiers: Vec<TierReport>,
     /// The levels of detail of the character, itself included.
     pub levels: Vec<LevelReport>,
     /// Number of vertices of an instance.
@@ -143,6 +146,7 @@ pub fn scene(
         setting: Setting::new(Some(gpu), Drawing::timed_by(gpu)?, &stage, options),
         skinning: drawn.skinning,
         mesh: drawn.mesh,
+        tiers: TierReport::of(drawn),
         levels: model.levels,
         vertices: subject.model.meshes.iter().map(|mesh| mesh.positions.len()).sum(),
         distances: rows,
@@ -152,15 +156,15 @@ pub fn scene(
 
 /// The ways to draw in the order of [`SceneRow::NAMES`].
 fn ways(all: &Parts, drawn: &DrawnOptions) -> Vec<Parts> {
-    let Parts { bones, influences, mesh, gate, skinning } = *all;
+    let Parts { bones, influences, mesh, gate, skinning, ref tiers } = *all;
     let mut ways = vec![
         Parts::NONE,
-        Parts { bones, gate, ..Parts::NONE },
+        Parts { bones, gate, tiers: tiers.clone(), ..Parts::NONE },
         Parts { influences, skinning, ..Parts::NONE },
-        Parts { mesh: 0.0, ..*all },
+        Parts { mesh: 0.0, ..all.clone() },
     ];
     if drawn.mesh != Detail::Full {
-        ways.extend([Parts { mesh, ..Parts::NONE }, *all]);
+        ways.extend([Parts { mesh, ..Parts::NONE }, all.clone()]);
     }
     ways
 }

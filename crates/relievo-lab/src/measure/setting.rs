@@ -1,11 +1,13 @@
 //! The part of the reports over distances that says what was measured.
 
+use std::collections::BTreeMap;
+
 use relievo::gpu::Gpu;
 use serde::Serialize;
 
 use crate::harness::TimedBy;
 use crate::measure::gates::GateMode;
-use crate::measure::options::{Layout, LodOptions};
+use crate::measure::options::{DrawnOptions, Layout, LodOptions};
 use crate::measure::stage::Stage;
 
 /// What was measured, and how.
@@ -23,6 +25,9 @@ pub struct Setting {
     pub clip: String,
     /// The gate.
     pub gate: GateMode,
+    /// The caller's priorities of bones by name or index; other bones have 0.5.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub priorities: BTreeMap<String, f32>,
     /// Number of instances.
     pub instances: usize,
     /// How the instances are placed.
@@ -47,6 +52,22 @@ pub struct Setting {
     pub focal_pixels: f32,
 }
 
+/// A reduced skeleton as it was asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TierReport {
+    /// The fraction of bones to keep.
+    pub bones: f32,
+    /// Whether each vertex follows one bone.
+    pub rigid: bool,
+}
+
+impl TierReport {
+    pub(crate) fn of(drawn: &DrawnOptions) -> Vec<Self> {
+        let tiers = drawn.tiers.iter();
+        tiers.map(|tier| Self { bones: tier.bones, rigid: tier.is_rigid }).collect()
+    }
+}
+
 impl Setting {
     pub(crate) fn new(gpu: Option<&Gpu>, timed_by: TimedBy, stage: &Stage<'_>, options: &LodOptions) -> Self {
         let (adapter, crowd) = (gpu.map(Gpu::adapter), stage.options);
@@ -57,6 +78,7 @@ impl Setting {
             model: stage.subject.name.to_owned(),
             clip: stage.clip.name().to_owned(),
             gate: options.gate,
+            priorities: crowd.priorities.clone(),
             instances: crowd.instances,
             layout: crowd.layout,
             seed: crowd.seed,

@@ -72,12 +72,16 @@ impl<'a> Stage<'a> {
         let (skeleton, clips) = (&self.subject.model.skeleton, [self.clip]);
         let Self { order, set, watched, .. } = self;
         let animated_bones = || AnimatedBones::new(order, set, &clips);
-        Ok(match *mode {
+        let mut user = vec![USER_DEFAULT; skeleton.len()];
+        for (name, priority) in &self.options.priorities {
+            let path = format!("priorities.{name}");
+            user[self.subject.model.bone(name).map_err(|error| InputError { path, ..error })?] = *priority;
+        }
+        let mut gate = match *mode {
             GateMode::Off => Gate::Off(animated_bones()?),
             GateMode::Uniform => Gate::Uniform(animated_bones()?),
             GateMode::Random => Gate::Random(animated_bones()?),
             GateMode::SkipPeriod { period, weights } => {
-                let user = vec![USER_DEFAULT; skeleton.len()];
                 let priorities = Priorities::new(skeleton, self.clip, Wrap::Loop, &weights, &user)?;
                 let table = PriorityTable::new(order, set, &clips, &[priorities])?;
                 Gate::SkipPeriod { table, period: (period * f64::from(TICKS)).round() as u32 }
@@ -87,7 +91,9 @@ impl<'a> Stage<'a> {
                 Gate::Budget { table, bones }
             }
             GateMode::Bounded { .. } => Gate::Bounded(BoundTable::new(skeleton, set, &clips, watched, PATH)?),
-        })
+        };
+        gate.never_skip(order, &user.iter().map(|priority| *priority == 1.0).collect::<Vec<_>>())?;
+        Ok(gate)
     }
 
     /// Number of bones of all instances.

@@ -7,6 +7,7 @@ use crate::asset::transform::AFFINE_IDENTITY;
 use crate::gpu::{Buffer, Gpu, Group, Uniform};
 use crate::render::{Layer, TargetFormat};
 use crate::scene::layouts::SceneLayouts;
+use crate::scene::terrain::nowhere;
 use crate::scene::terrain::{TerrainDrawable, TerrainGeometry, patch_indices};
 use crate::scene::{Camera, Placement, TerrainStyle};
 use crate::shared::render::scene_terrain::{TerrainParams, TerrainPatch, TerrainView};
@@ -64,7 +65,7 @@ impl Land {
             origin: patch.map(|at| at * (size as i32 - 1)),
             uv: patch.map(|at| (f64::from(at) * tiles).rem_euclid(f64::from(TILES_PERIOD)) as f32),
             window,
-            unused: 0,
+            level: 0,
         };
         let patches: Vec<_> = (0..).zip(PATCHES).map(patch).collect();
         let indices = patch_indices(size);
@@ -82,9 +83,10 @@ impl Land {
     /// The ground with sample coordinates counted from `base`, in a view whose cell corner is the first sample.
     pub fn ground(&self, gpu: &Gpu, layouts: &SceneLayouts, base: [i32; 2]) -> Group {
         let rest = base.map(|at| (f64::from(at) * self.config.terrain_scale) as f32);
-        let ground =
-            TerrainView { base: IVec2::from(base), rest: Vec3::new(rest[0], 0.0, rest[1]), object: 1 };
-        layouts.ground(gpu, &Uniform::new(gpu, "ground", &ground).expect("uploaded")).expect("bound")
+        let rest = Vec3::new(rest[0], 0.0, rest[1]);
+        let ground = TerrainView { base: IVec2::from(base), rest, ..nowhere(1) };
+        let nodes = Buffer::new(gpu, "nodes", 1).expect("allocated");
+        layouts.ground(gpu, &Uniform::new(gpu, "ground", &ground).expect("uploaded"), &nodes).expect("bound")
     }
 
     /// The width of the land, in world units.

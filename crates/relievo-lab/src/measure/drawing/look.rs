@@ -58,7 +58,7 @@ impl Look {
         stage: &Stage<'_>,
         drawn: &DrawnModel,
         (placements, camera): (&[relievo::scene::Placement], Camera),
-        parts: Parts,
+        parts: &Parts,
     ) -> Result<Self, Error> {
         let (quality, budget) = parts.quality();
         let mut scene = Scene::new(gpu)?;
@@ -66,7 +66,10 @@ impl Look {
         let Range { min, max } = stage.options.range;
         let range = Range { min: world(min), max: world(max) };
         let (gate, influences) = (parts.bone_gate(range), parts.influence_lod(range));
-        let options = CharacterOptions { gate, influences, ..CharacterOptions::default() };
+        let priorities = stage.options.priorities.iter().map(|(bone, priority)| (bone.as_str(), *priority));
+        let priorities = if gate == BoneGate::Off { Default::default() } else { priorities.collect() };
+        let tiers = parts.tiers.clone();
+        let options = CharacterOptions { gate, influences, priorities, tiers, ..CharacterOptions::default() };
         let crowd = scene.add_character_with(&drawn.model, placements.len(), &options)?;
         scene.set_error_budget(budget)?;
         if parts.mesh > 0.0 {

@@ -1,25 +1,33 @@
 //! The pixels that each part of level of detail may take, as a scene takes them: their sum, and fractions of it.
 
 use relievo::InputError;
-use relievo::scene::{BoneGate, DistanceRange, ErrorBudget, InfluenceLod, Quality};
+use relievo::scene::{BoneGate, DistanceRange, ErrorBudget, InfluenceLod, Quality, SkeletonTier};
 
 use crate::measure::gates::GateMode;
 use crate::measure::options::{Detail, DrawnOptions};
 
 /// Pixels for bones that keep an old pose, for influences that are left out, and for coarser meshes; and the gate.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Parts {
     pub bones: f32,
     pub influences: f32,
     pub mesh: f32,
     pub gate: GateMode,
     pub skinning: Detail,
+    /// Reduced skeletons.
+    pub tiers: Vec<SkeletonTier>,
 }
 
 impl Parts {
     /// Full detail.
-    pub const NONE: Self =
-        Self { bones: 0.0, influences: 0.0, mesh: 0.0, gate: GateMode::Off, skinning: Detail::Full };
+    pub const NONE: Self = Self {
+        bones: 0.0,
+        influences: 0.0,
+        mesh: 0.0,
+        gate: GateMode::Off,
+        skinning: Detail::Full,
+        tiers: Vec::new(),
+    };
 
     /// Those of a gate and of how the crowd is drawn.
     pub fn new(gate: &GateMode, drawn: &DrawnOptions) -> Result<Self, InputError> {
@@ -32,7 +40,8 @@ impl Parts {
             }
         };
         let [influences, mesh] = [drawn.skinning, drawn.mesh].map(Detail::pixels);
-        Ok(Self { bones, influences, mesh, gate: *gate, skinning: drawn.skinning })
+        let DrawnOptions { skinning, ref tiers, .. } = *drawn;
+        Ok(Self { bones, influences, mesh, gate: *gate, skinning, tiers: tiers.clone() })
     }
 
     /// The influences of a scene's character. `range` has the distances in world units over which they fade.
@@ -93,7 +102,10 @@ mod tests {
         let gate = GateMode::Bounded { pixels: 2.0 };
         let bounded = Parts::new(&gate, &DrawnOptions::default());
         let skinning = Detail::Bounded { pixels: 0.5 };
-        assert_eq!(bounded, Ok(Parts { bones: 2.0, influences: 0.5, mesh: 0.5, gate, skinning }));
+        assert_eq!(
+            bounded,
+            Ok(Parts { bones: 2.0, influences: 0.5, mesh: 0.5, gate, skinning, tiers: Vec::new() })
+        );
         let uniform = Parts::new(&GateMode::Uniform, &DrawnOptions::default()).expect("a scene has it");
         let range = DistanceRange { min: 1.0, max: 2.0 };
         assert_eq!((uniform.bones, uniform.bone_gate(range)), (0.0, BoneGate::Uniform(range)));

@@ -7,7 +7,7 @@ use relievo::gpu::{Buffer, Gpu, GpuError, Uniform};
 use relievo::ops::lod::allowed::allowed_by;
 use relievo::ops::lod::select::reference::{depth_inside, is_shown, placed_sphere, select};
 use relievo::ops::lod::select::{Allowed, SelectBuffers, SelectPass, UNSEEN_ALLOWED};
-use relievo::ops::lod::{BLOCK, LodCamera, LodObject, SceneInstance, SelectView};
+use relievo::ops::lod::{BLOCK, INSTANCE_ALIVE, LodCamera, LodObject, SceneInstance, SelectView};
 use relievo::shared::lod::criterion::{
     CRITERION_BOX, CRITERION_DISTANCE, CRITERION_ERROR, CRITERION_NEAREST, MAX_METRIC,
 };
@@ -75,8 +75,19 @@ struct Scene {
 impl Scene {
     fn new(case: u32, sizes: &[u32]) -> Self {
         let blocks = Blocks::new(case, sizes);
-        let instances = random_instances(case, BLOCK as usize * blocks.block_objects.len());
+        let mut instances = random_instances(case, BLOCK as usize * blocks.block_objects.len());
+        let hidden = instances.iter_mut().enumerate().filter(|(at, _)| is_hidden(*at));
+        hidden.for_each(|(_, instance)| instance.flags &= !INSTANCE_ALIVE);
         Self { blocks, instances }
+    }
+
+    /// The instances on the device: those that the reference must not see are alive there, but not shown.
+    fn uploaded(&self) -> Vec<SceneInstance> {
+        let alive = |(at, instance): (usize, &SceneInstance)| match is_hidden(at) {
+            true => SceneInstance { flags: instance.flags | INSTANCE_ALIVE, ..*instance },
+            false => *instance,
+        };
+        self.instances.iter().enumerate().map(alive).collect()
     }
 
     /// The object of an instance, if its block is one of the view's.
@@ -124,11 +135,12 @@ impl Outputs {
             view: &Uniform::new(gpu, "view", view)?,
             objects: &Buffer::from_slice(gpu, "objects", &scene.blocks.objects)?,
             block_objects: &Buffer::from_slice(gpu, "block_objects", &scene.blocks.block_objects)?,
-            instances: &Buffer::from_slice(gpu, "instances", &scene.instances)?,
+            instances: &Buffer::from_slice(gpu, "instances", &scene.uploaded())?,
             allowed: &self.allowed.buffer,
             metrics: &self.metrics.buffer,
             placements: &self.placements.buffer,
             decisions: &Buffer::from_slice(gpu, "decisions", &last_decisions(scene.instances.len()))?,
+            shown: &Buffer::from_slice(gpu, "shown", &shown_bits(scene.instances.len()))?,
         };
         let job = SelectPass::new(gpu)?.prepare(gpu, buffers)?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
@@ -351,6 +363,17 @@ impl Found {
     }
 }
 
+/// Whether an instance is not shown in the views.
+fn is_hidden(index: usize) -> bool {
+    index % 11 == 3
+}
+
+/// The bits of the instances that are shown.
+fn shown_bits(count: usize) -> Vec<u32> {
+    let word = |word: usize| (0..32).fold(0, |bits, at| bits | u32::from(!is_hidden(32 * word + at)) << at);
+    (0..count / 32).map(word).collect()
+}
+
 /// Decisions of a frame before: of every seventh instance none.
 fn last_decisions(count: usize) -> Vec<u32> {
     (0..count as u32).map(|at| decision_word(u32::from(at % 7 > 0), 0, 0, 0, 0)).collect()
@@ -391,6 +414,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             metrics: &Buffer::new(gpu, "metrics", count)?,
             placements: &Buffer::new(gpu, "placements", count)?,
             decisions: &Buffer::new(gpu, "decisions", count)?,
+            shown: &Buffer::from_slice(gpu, "shown", &vec![u32::MAX; count / 32])?,
         };
         let job = pass.prepare(gpu, buffers)?;
         let seen =

@@ -1,0 +1,169 @@
+// Makes nodes of an endless terrain from regions of finer heights: copies every 2^`finer`-th sample into the node's tile, and finds
+// the node's extremes and how far its triangles lie from the finer heights. One thread handles one finer sample.
+//
+// Beside a coarser neighbour, a node is drawn stitched: each odd vertex on the border lies in an even one beside it. Of two cells of
+// the border then remain the triangles between the even vertices A and B of the border and the vertices I, J, K of the next row:
+// (A, I, J), (A, J, B) and (B, J, K).
+
+// Width in samples of the margin around a node in its tile.
+const NODE_MARGIN: u32 = 2u;
+// Number of words that a node's facts take.
+const NODE_FACTS: u32 = 5u;
+// Added to a height, it makes the order of heights that of unsigned words.
+const SIGN: u32 = 0x80000000u;
+
+// Parameters of the kernel `terrain/node`.
+struct NodeParams {
+    // Number of samples along an edge of a region: (`size` − 1 + 2 · `NODE_MARGIN`) · 2^`finer` + 1.
+    width: u32,
+    // Number of regions.
+    count: u32,
+    // Number of samples along an edge of a node, without its margin.
+    size: u32,
+    // Number of levels by which the regions are finer than the nodes.
+    finer: u32,
+}
+
+// Parameters of the kernel.
+@group(0) @binding(0) var<uniform> params: NodeParams;
+// Heights of the regions, one after the other, row by row, in 1/65536 world units.
+@group(0) @binding(1) var<storage, read> heights: array<i32>;
+// Index of each region's tile; tiles beyond the end of `tiles` are not written.
+@group(0) @binding(2) var<storage, read> slots: array<u32>;
+// Out: the tiles, one after the other: (`size` + 2 · `NODE_MARGIN`)² heights each.
+@group(0) @binding(3) var<storage, read_write> tiles: array<i32>;
+// Inout: the facts of each tile, 0 before. Its largest height + `SIGN`; the complement of its smallest height + `SIGN`; rounded up,
+// the largest deviation of a finer height from the triangles, the same beside stitched borders, and half the largest second
+// difference of finer heights.
+@group(0) @binding(4) var<storage, read_write> facts: array<atomic<u32>>;
+
+// The facts of the workgroup's samples.
+var<workgroup> most: array<atomic<u32>, 5>;
+
+// Height of a finer sample.
+fn height_at(region: u32, x: u32, y: u32) -> i32 {
+    return heights[(region * params.width + y) * params.width + x];
+}
+
+// `part` / 2^`shift` of the difference between two heights, rounded down.
+fn towards(start: i32, end: i32, part: u32, shift: u32) -> i32 {
+    let whole = end - start;
+    let rest = (whole & i32((1u << shift) - 1u)) * i32(part);
+    return (whole >> shift) * i32(part) + (rest >> shift);
+}
+
+// Distance of two heights, plus the error of a surface whose two terms are rounded down.
+fn apart(own: i32, surface: i32) -> u32 {
+    return u32(max(own, surface)) - u32(min(own, surface)) + 2u;
+}
+
+// Deviation of the finer sample (x, y), counted from the node's first sample, from the node's triangles. The diagonal of a cell runs
+// from south-west to north-east.
+fn deviation_at(region: u32, x: u32, y: u32) -> u32 {
+    let step = 1u << params.finer;
+    let cell = min(vec2<u32>(x, y) >> vec2<u32>(params.finer), vec2<u32>(params.size - 2u));
+    let part = vec2<u32>(x, y) - cell * step;
+    let at = (cell + NODE_MARGIN) * step;
+    let north_east = height_at(region, at.x + step, at.y);
+    let south_west = height_at(region, at.x, at.y + step);
+    let is_north = part.x + part.y <= step;
+    let corner = select(at + step, at, is_north);
+    let start = height_at(region, corner.x, corner.y);
+    let along = select(vec2<u32>(step - part.y, step - part.x), part, is_north);
+    let surface = start + towards(start, north_east, along.x, params.finer)
+        + towards(start, south_west, along.y, params.finer);
+    let own = height_at(region, x + NODE_MARGIN * step, y + NODE_MARGIN * step);
+    if part.x == 0u && part.y == 0u {
+        return 0u;
+    }
+    return apart(own, surface);
+}
+
+// Height of the finer sample `along` a side of the node and `depth` samples inside. Sides: west, east, north, south.
+fn strip_height(region: u32, side: u32, along: u32, depth: u32) -> i32 {
+    let last = (params.size - 1u) << params.finer;
+    let across = select(depth, last - depth, (side & 1u) != 0u);
+    let at = select(vec2<u32>(along, across), vec2<u32>(across, along), side < 2u) + (NODE_MARGIN << params.finer);
+    return height_at(region, at.x, at.y);
+}
+
+// Deviation of a finer sample beside a side of the node from the triangles of the stitched border.
+fn stitched_deviation(region: u32, side: u32, along: u32, depth: u32) -> u32 {
+    let step = 1u << params.finer;
+    let first = min(along / (2u * step), (params.size - 3u) / 2u) * 2u * step;
+    let at = along - first;
+    let is_far = at > 2u * step - depth;
+    // The even vertex of the border, and what lies beyond it.
+    let start = strip_height(region, side, first + select(0u, 2u * step, is_far), 0u);
+    let middle = strip_height(region, side, first + step, step);
+    let own = strip_height(region, side, along, depth);
+    if at >= depth && !is_far {
+        let other = strip_height(region, side, first + 2u * step, 0u);
+        return apart(own, start + towards(start, middle, depth, params.finer)
+            + towards(start, other, at - depth, params.finer + 1u));
+    }
+    let near = select(at, 2u * step - at, is_far);
+    let inner = strip_height(region, side, first + select(0u, 2u * step, is_far), step);
+    return apart(own, start + towards(start, inner, depth - near, params.finer)
+        + towards(start, middle, near, params.finer));
+}
+
+// Largest deviation of the finer sample (x, y), counted from the node's first sample, from the triangles of stitched borders.
+fn stitched_at(region: u32, x: u32, y: u32) -> u32 {
+    let last = (params.size - 1u) << params.finer;
+    var largest = 0u;
+    for (var side = 0u; side < 4u; side++) {
+        let across = select(y, x, side < 2u);
+        let depth = select(across, last - across, (side & 1u) != 0u);
+        if depth < 1u << params.finer {
+            largest = max(largest, stitched_deviation(region, side, select(x, y, side < 2u), depth));
+        }
+    }
+    return largest;
+}
+
+// Half of the sum of two differences, rounded away from 0.
+fn half_of(a: i32, b: i32) -> u32 {
+    return u32(abs((a >> 1u) + (b >> 1u))) + 1u;
+}
+
+// Half the largest second difference around a finer sample that is not on the region's rim: along x, along y, and the twist of the
+// cell to the south-east.
+fn second_difference_at(region: u32, x: u32, y: u32) -> u32 {
+    let own = height_at(region, x, y);
+    let east = height_at(region, x + 1u, y);
+    let south = height_at(region, x, y + 1u);
+    let along_x = half_of(height_at(region, x - 1u, y) - own, east - own);
+    let along_y = half_of(height_at(region, x, y - 1u) - own, south - own);
+    let twist = half_of(own - east, height_at(region, x + 1u, y + 1u) - south);
+    return max(max(along_x, along_y), twist);
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let slot = slots[min(id.z, params.count - 1u)];
+    let tile_width = params.size + 2u * NODE_MARGIN;
+    let is_there = slot < arrayLength(&facts) / NODE_FACTS;
+    if id.x < params.width && id.y < params.width && is_there {
+        let step = 1u << params.finer;
+        let own = height_at(id.z, id.x, id.y);
+        if (id.x | id.y) % step == 0u {
+            tiles[(slot * tile_width + id.y / step) * tile_width + id.x / step] = own;
+        }
+        let first = NODE_MARGIN * step;
+        let last = first + (params.size - 1u) * step;
+        if min(id.x, id.y) >= first && max(id.x, id.y) <= last {
+            atomicMax(&most[0], u32(own) ^ SIGN);
+            atomicMax(&most[1], ~(u32(own) ^ SIGN));
+            atomicMax(&most[2], deviation_at(id.z, id.x - first, id.y - first));
+            atomicMax(&most[3], stitched_at(id.z, id.x - first, id.y - first));
+        }
+        if min(id.x, id.y) >= 1u && max(id.x, id.y) + 1u < params.width {
+            atomicMax(&most[4], second_difference_at(id.z, id.x, id.y));
+        }
+    }
+    workgroupBarrier();
+    if lane < NODE_FACTS && is_there {
+        atomicMax(&facts[NODE_FACTS * slot + lane], atomicLoad(&most[lane]));
+    }
+}

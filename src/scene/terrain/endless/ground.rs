@@ -1,0 +1,114 @@
+//! The finest ground of endless terrain on the host, made where it is asked for.
+
+use std::collections::VecDeque;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use glam::DVec3;
+
+use crate::InputError;
+use crate::scene::object_kind::UnitRay;
+use crate::scene::ray::SurfaceHit;
+use crate::terrain::field::field;
+use crate::terrain::ground::Ground;
+use crate::terrain::mesh::GroundPoint;
+use crate::terrain::recipe::Recipe;
+
+/// Largest number of patches that are kept.
+const KEPT: usize = 1024;
+
+/// Patches of the finest ground; the last that were asked for are kept.
+#[derive(Debug)]
+pub(super) struct FinestGround {
+    recipe: Recipe,
+    edge: f64,
+    patches: Mutex<Patches>,
+}
+
+#[derive(Debug)]
+struct Patches {
+    ground: Ground,
+    /// The patches of `ground`, the oldest first.
+    order: VecDeque<[i32; 2]>,
+}
+
+impl FinestGround {
+    pub fn new(recipe: &Recipe) -> Result<Self, InputError> {
+        let patches = Patches { ground: Ground::new(&recipe.config)?, order: VecDeque::new() };
+        Ok(Self { recipe: recipe.clone(), edge: recipe.config.edge_length(), patches: Mutex::new(patches) })
+    }
+
+    /// The ground at a world position; `None` beyond the world.
+    pub fn point_at(&self, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
+        let Some(patch) = self.patch_at(x, z) else { return Ok(None) };
+        Ok(self.with(patch)?.and_then(|patches| patches.ground.point_at(x, z)))
+    }
+
+    /// The first hit of a ray within a box of the world. `origin` is the ray's in world units.
+    pub fn hit(
+        &self,
+        [low, high]: [DVec3; 2],
+        origin: DVec3,
+        ray: &UnitRay,
+    ) -> Result<Option<SurfaceHit>, InputError> {
+        let (mut from, mut to) = (0.0_f64, ray.limit);
+        for axis in 0..3 {
+            let (at, along) = (origin[axis], ray.direction[axis]);
+            if along == 0.0 {
+                if at < low[axis] || at > high[axis] {
+                    return Ok(None);
+                }
+                continue;
+            }
+            let [one, other] = [(low[axis] - at) / along, (high[axis] - at) / along];
+            (from, to) = (from.max(one.min(other)), to.min(one.max(other)));
+        }
+        // A step beyond each border, so that the next patch is found whatever the rounding.
+        let step = 1e-9 * self.edge;
+        while from <= to {
+            let at = origin + (from + step) * ray.direction;
+            let Some(patch) = self.patch_at(at.x, at.z) else { return Ok(None) };
+            let corner = DVec3::new(f64::from(patch[0]), 0.0, f64::from(patch[1])) * self.edge;
+            if let Some(patches) = self.with(patch)?
+                && let Some(hit) = patches.ground.hit(patch, [origin - corner, ray.direction], ray.limit)
+            {
+                return Ok(Some(SurfaceHit { distance: hit.distance, normal: hit.normal }));
+            }
+            let leaves = |axis: usize| {
+                let (at, along) = (origin[axis] - corner[axis], ray.direction[axis]);
+                let border = if along > 0.0 { self.edge } else { 0.0 };
+                if along == 0.0 { f64::INFINITY } else { (border - at) / along }
+            };
+            let next = leaves(0).min(leaves(2));
+            if !next.is_finite() {
+                return Ok(None);
+            }
+            from = next.max(from + step);
+        }
+        Ok(None)
+    }
+
+    fn patch_at(&self, x: f64, z: f64) -> Option<[i32; 2]> {
+        let [column, row] = [x, z].map(|at| (at / self.edge).floor());
+        let is_index = |at: f64| (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&at);
+        (is_index(column) && is_index(row)).then_some([column as i32, row as i32])
+    }
+
+    /// The patches, with `patch` among them; `None` for a patch beyond the world.
+    fn with(&self, patch: [i32; 2]) -> Result<Option<MutexGuard<'_, Patches>>, InputError> {
+        let mut patches = self.patches.lock().unwrap_or_else(PoisonError::into_inner);
+        if !patches.order.contains(&patch) {
+            if self.recipe.validate(&[patch], 0).is_err() {
+                return Ok(None);
+            }
+            let heights = field(&self.recipe, &[patch], 0)?.swap_remove(0);
+            patches.ground.insert(patch, &heights, 0)?;
+            patches.order.push_back(patch);
+            if patches.order.len() > KEPT
+                && let Some(oldest) = patches.order.pop_front()
+            {
+                patches.ground.remove(oldest);
+            }
+        }
+        Ok(Some(patches))
+    }
+}

@@ -1,0 +1,584 @@
+//! Endless terrain: nodes of a quadtree, made on the device where the views of a frame need them (thesis B sections 4.4 and 5.1.2).
+//!
+//! The host decides which nodes are drawn and which are made ([`Cover`]), and the device makes them. A node is drawn as soon as it is
+//! made, and refined as soon as its facts have arrived from the device: its extremes, and how far it lies from the finest heights.
+
+mod ground;
+mod in_view;
+mod pool;
+
+use std::any::Any;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex};
+
+use glam::{DVec3, Vec3};
+
+use super::TerrainDrawable;
+use super::drawable::{TerrainGeometry, patch_indices};
+use super::source::TerrainSource;
+use crate::animation::Frame;
+use crate::gpu::{Buffer, Gpu, Staged, Uniform};
+use crate::lod::allowed::allowed_by;
+use crate::lod::{LodCamera, SelectView};
+use crate::scene::chunk::Chunk;
+use crate::scene::instances::Instances;
+use crate::scene::layouts::SceneLayouts;
+use crate::scene::mesh::NOTHING;
+use crate::scene::object_kind::{
+    KindInView, Made, MakeOn, Making, ObjectKind, OnDevice, Placed, Provided, SeenBy, UnitRay,
+};
+use crate::scene::placement::Placement;
+use crate::scene::ray::SurfaceHit;
+use crate::shared::lod::object::{OBJECT_LEVELS, SceneDraw};
+use crate::shared::render::scene_terrain::{MORPH_START, STITCHED, TerrainNode, TerrainParams};
+use crate::skinning::bounding_sphere::BoundingSphere;
+use crate::terrain::config::{HEIGHT_ONE, TerrainConfig};
+use crate::terrain::cover::planes;
+use crate::terrain::materials::Materials;
+use crate::terrain::mesh::GroundPoint;
+use crate::terrain::node::NodeFacts;
+use crate::terrain::quadtree::{Beside, Cover, Leaf, Node};
+use crate::terrain::recipe::Recipe;
+use crate::terrain::remainder::remainder;
+use crate::terrain::texture::TerrainTexture;
+use crate::terrain::window::Region;
+use crate::{Error, InputError};
+use ground::FinestGround;
+use in_view::{EndlessInView, ViewTable};
+use pool::{BATCH, NewNode, Pool, finer};
+
+/// Number of parts along an edge of a node in which the displacement that a view allows is found. A smaller part allows more.
+const PARTS: u32 = 4;
+
+/// Factor of the LOD bias from one frame to the next, while it changes.
+const BIAS_STEP: f32 = 1.05;
+
+/// Largest LOD bias.
+const MOST_BIAS: f32 = 1024.0;
+
+/// Extent and memory of endless terrain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndlessLimits {
+    /// Distance in world units up to which terrain is drawn around each camera, at most one and a half edges of the coarsest nodes
+    /// (`patch_size` − 1) · 2^`coarse_levels` · `terrain_scale`. `None`: as far as that.
+    pub view_distance: Option<f64>,
+    /// Largest number of nodes to make in a frame, 16 to 1024. Default: 16.
+    pub nodes_per_frame: u32,
+    /// Number of nodes for which there is memory, 256 to 65536. Default: 1024.
+    pub capacity: u32,
+}
+
+impl Default for EndlessLimits {
+    fn default() -> Self {
+        Self { view_distance: None, nodes_per_frame: 16, capacity: 1024 }
+    }
+}
+
+impl EndlessLimits {
+    /// Checks the limits, and returns the view distance.
+    fn checked(&self, config: &TerrainConfig) -> Result<f64, InputError> {
+        let most = 1.5 * config.edge_length() * f64::from(1 << config.coarse_levels);
+        let distance = self.view_distance.unwrap_or(most);
+        if !(distance > 0.0 && distance <= most) {
+            let bound = format!(
+                "must be above 0 and at most {most}, one and a half edges of the coarsest nodes; raise coarse_levels for more"
+            );
+            return Err(InputError::new("view_distance", distance, bound));
+        }
+        InputError::check_within("nodes_per_frame", self.nodes_per_frame, 16..=1024)?;
+        InputError::check_within("capacity", self.capacity, 256..=65_536)?;
+        Ok(distance)
+    }
+}
+
+/// The nodes of an endless terrain, after a frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct EndlessStatistics {
+    /// Number of nodes on the device.
+    pub nodes: usize,
+    /// Number of nodes for which there is memory.
+    pub capacity: usize,
+    /// Number of nodes that the last frame made.
+    pub made: usize,
+    /// Number of nodes that the views of the last frame drew, without culling.
+    pub drawn: usize,
+    /// How much of the detail that the views need is there: 1 if all of it is, as after some frames in one place.
+    pub ready: f32,
+    /// Number of nodes that were not made because the memory holds nodes in use only.
+    pub refused: usize,
+}
+
+/// An endless terrain in a scene.
+#[derive(Debug)]
+pub(in crate::scene) struct Endless {
+    source: TerrainSource,
+    recipe: Recipe,
+    limits: EndlessLimits,
+    view_distance: f64,
+    pool: Pool,
+    residents: BTreeMap<Node, Resident>,
+    free: Vec<u32>,
+    /// Number of the frame.
+    frame: u64,
+    /// The nodes that the frame makes.
+    new: Vec<NewNode>,
+    tables: Arc<Mutex<Vec<ViewTable>>>,
+    ground: FinestGround,
+    statistics: EndlessStatistics,
+    /// Factor of the allowed displacement: 1, or more if the nodes that views need exceed the memory.
+    lod_bias: f32,
+}
+
+/// A node on the device.
+#[derive(Debug, Clone, Copy)]
+struct Resident {
+    slot: u32,
+    /// The last frame that needed the node.
+    used: u64,
+    /// The frame that makes the node.
+    made: u64,
+    facts: Option<Facts>,
+}
+
+/// What is known of a node, in world units.
+#[derive(Debug, Clone, Copy)]
+struct Facts {
+    /// The lowest and the highest height of its finer heights.
+    heights: [f64; 2],
+    /// Bound of its distance from the finest heights.
+    error: f32,
+}
+
+/// Creates endless terrain.
+///
+/// # Errors
+/// [`InputError`] for a recipe or limits out of bounds; [`crate::gpu::GpuError`].
+pub(in crate::scene) fn made(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    source: &TerrainSource,
+    (recipe, limits): (&Recipe, EndlessLimits),
+) -> Result<(Endless, Instances, (Vec<Chunk>, Vec<SceneDraw>)), Error> {
+    pool::check(recipe)?;
+    let view_distance = limits.checked(&recipe.config)?;
+    let mut instances = Instances::new(limits.capacity as usize);
+    let capacity = instances.capacity();
+    let pool = Pool::new(gpu, recipe, capacity)?;
+    let (chunks, draws) = drawn(gpu, layouts, source, &pool, capacity)?;
+    let hidden = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
+    for _ in 0..capacity {
+        instances.spawn(&Placement::default(), &hidden);
+    }
+    let endless = Endless {
+        source: source.clone(),
+        recipe: recipe.clone(),
+        limits,
+        view_distance,
+        pool,
+        residents: BTreeMap::new(),
+        free: (0..capacity as u32).rev().collect(),
+        frame: 0,
+        new: Vec::new(),
+        tables: Arc::default(),
+        ground: FinestGround::new(recipe)?,
+        statistics: EndlessStatistics { capacity, ..EndlessStatistics::default() },
+        lod_bias: 1.0,
+    };
+    Ok((endless, instances, (chunks, draws)))
+}
+
+/// The drawable of all nodes of a pool.
+fn drawn(
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    source: &TerrainSource,
+    pool: &Pool,
+    capacity: usize,
+) -> Result<(Vec<Chunk>, Vec<SceneDraw>), Error> {
+    let config = source.config();
+    let textures = match &source.textures {
+        Some(textures) => textures.clone(),
+        None => TerrainTexture::of_zones(&config.zones)?,
+    };
+    let zones = Materials::new(gpu, &config.zones, &textures)?;
+    let indices = patch_indices(config.patch_size);
+    let params = TerrainParams {
+        in_width: pool::tile_width(config),
+        size: config.patch_size,
+        spacing: config.terrain_scale as f32,
+        run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
+        tiling: (config.tiles_per_patch() / f64::from(config.patch_size - 1)) as f32,
+        tiles_per_unit: (1.0 / config.tile()) as f32,
+        zone_count: zones.zone_count,
+        additive: source.shading.weights.code(),
+        planes: planes(config.triplanar),
+        variation: config.variation as f32,
+        first_patch: 0,
+    };
+    let geometry = TerrainGeometry {
+        params: Uniform::new(gpu, "terrain", &params)?,
+        heights: pool.tiles.clone(),
+        patches: pool.patches.clone(),
+        indices: Buffer::constant(gpu, "triangles of a node", &indices)?,
+        zones,
+    };
+    let drawable = TerrainDrawable::new(gpu, layouts, geometry, source.style)?;
+    let mut draws = vec![NOTHING; OBJECT_LEVELS as usize];
+    draws[0].index_count = indices.len() as u32;
+    Ok((vec![Chunk::new(0..capacity, vec![Box::new(drawable)])], draws))
+}
+
+impl Endless {
+    /// The finest ground at a world position.
+    ///
+    /// # Errors
+    /// [`InputError`] for a position beyond the world.
+    pub fn point_at(&self, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
+        self.ground.point_at(x, z)
+    }
+
+    /// The nodes after the last frame.
+    pub fn statistics(&self) -> EndlessStatistics {
+        self.statistics
+    }
+
+    fn config(&self) -> &TerrainConfig {
+        &self.recipe.config
+    }
+
+    /// Length of an edge of a node in world units.
+    fn edge(&self, level: u32) -> f64 {
+        self.config().edge_length() * f64::from(1_u32 << level)
+    }
+
+    /// The lowest and the highest corner of a node's box in world units. A node whose facts are unknown has those of the node that
+    /// covers it, or the bound of all heights.
+    fn node_box(&self, node: Node) -> [DVec3; 2] {
+        let known = (node.level..=self.config().coarse_levels)
+            .find_map(|level| self.residents.get(&node.ancestor(level))?.facts);
+        let most = self.config().most_height();
+        let [low, high] = known.map_or([-most, most], |facts| facts.heights);
+        let edge = self.edge(node.level);
+        let [x, z] = node.at.map(|at| f64::from(at) * edge);
+        [DVec3::new(x, low, z), DVec3::new(x + edge, high, z + edge)]
+    }
+
+    /// The placement and the bounding sphere of a node.
+    fn placed(&self, node: Node) -> Result<(Placement, BoundingSphere), InputError> {
+        let [low, high] = self.node_box(node);
+        let middle = 0.5 * (low + high);
+        let placement = Placement::at_world([middle.x, 0.0, middle.z]).checked()?;
+        // The sphere is slightly enlarged, to allow for rounding.
+        let radius = (1.000_01 * (high - middle).length()) as f32;
+        Ok((placement, BoundingSphere { center: Vec3::new(0.0, middle.y as f32, 0.0), radius }))
+    }
+
+    /// The coarsest nodes within the view distance of the eyes of views.
+    fn roots(&self, views: &[SelectView]) -> BTreeSet<Node> {
+        let (level, mut roots) = (self.config().coarse_levels, BTreeSet::new());
+        let edge = self.edge(level);
+        let eyes = views.iter().flat_map(|view| {
+            let corner = Placement::corner(view.cell.into());
+            view.cameras().iter().map(move |camera| corner + camera.eye.as_dvec3())
+        });
+        for eye in eyes {
+            let range = |at: f64| {
+                let end = |sign: f64| ((at + sign * self.view_distance) / edge).floor() as i32;
+                end(-1.0)..=end(1.0)
+            };
+            for (x, z) in range(eye.z).flat_map(|z| range(eye.x).map(move |x| (x, z))) {
+                let root = Node { level, at: [x, z] };
+                // Only roots whose samples have world coordinates exist.
+                let region = Region { first: pool::first_of(self.config(), root), width: 1, coarser: 0 };
+                if region.validate(self.config()).is_ok() {
+                    roots.insert(root);
+                }
+            }
+        }
+        roots
+    }
+
+    /// The displacement that a view allows to a node, in world units. `fraction` is the part that levels of detail may use.
+    fn allowed(&self, view: &SelectView, fraction: f32, node: Node) -> f32 {
+        let [low, high] = self.node_box(node).map(|at| at - Placement::corner(view.cell.into()));
+        let part = (high - low) / DVec3::new(PARTS.into(), 1.0, PARTS.into());
+        let half = 0.5 * part;
+        let radius = (1.000_01 * half.length()) as f32;
+        let parts = (0..PARTS * PARTS).map(|at| {
+            let at = DVec3::new(f64::from(at % PARTS), 0.0, f64::from(at / PARTS));
+            allowed_by(view.cameras(), (low + at * part + half).as_vec3(), radius, 1.0)
+        });
+        fraction * parts.fold(f32::INFINITY, f32::min)
+    }
+
+    /// Stores the facts that have arrived. Returns the nodes whose facts are new.
+    fn arrive(&mut self) -> Vec<Node> {
+        let Some((frame, facts)) = self.pool.arrived() else { return Vec::new() };
+        let mut known = Vec::new();
+        for (node, resident) in &mut self.residents {
+            if resident.facts.is_none() && resident.made <= frame {
+                let found = facts.get(resident.slot as usize).copied().flatten();
+                resident.facts = found.map(|found| facts_of(&self.recipe.config, *node, &found));
+                known.extend(resident.facts.map(|_| *node));
+            }
+        }
+        known
+    }
+
+    /// Gives a node a place in the pool; `None` if all places are in use.
+    fn admit(&mut self, node: Node) -> Option<NewNode> {
+        if self.free.is_empty() {
+            // Siblings leave together: without one of them, the others cannot be drawn.
+            let unused = self.residents.iter().filter(|(_, resident)| resident.used < self.frame);
+            let (oldest, _) = unused.min_by_key(|(node, resident)| (resident.used, **node))?;
+            let family = match oldest.level == self.config().coarse_levels {
+                true => vec![*oldest],
+                false => oldest.parent().children().to_vec(),
+            };
+            let left = family.iter().filter_map(|node| self.residents.remove(node));
+            self.free.extend(left.map(|resident| resident.slot));
+        }
+        let slot = self.free.pop()?;
+        self.residents.insert(node, Resident { slot, used: self.frame, made: self.frame, facts: None });
+        Some(NewNode { node, slot })
+    }
+
+    /// Admits the nodes that the frame makes: roots first, then the children that views miss, nearest first.
+    fn admit_missing(&mut self, missing: &[Node], eyes: &[DVec3]) {
+        let distance = |node: &Node| {
+            let [low, high] = self.node_box(*node);
+            let to = |eye: &DVec3| eye.distance(eye.clamp(low, high));
+            eyes.iter().map(to).fold(f64::INFINITY, f64::min)
+        };
+        let mut nearest: Vec<(f64, Node)> = missing.iter().map(|node| (distance(node), *node)).collect();
+        nearest.sort_by(|one, other| one.0.total_cmp(&other.0).then(other.1.cmp(&one.1)));
+        nearest.dedup_by_key(|(_, node)| *node);
+        for (_, parent) in nearest {
+            if self.new.len() + BATCH > self.limits.nodes_per_frame as usize {
+                break;
+            }
+            let absent: Vec<Node> =
+                parent.children().into_iter().filter(|node| !self.residents.contains_key(node)).collect();
+            for node in absent {
+                match self.admit(node) {
+                    Some(new) => self.new.push(new),
+                    None => self.statistics.refused += 1,
+                }
+            }
+        }
+    }
+
+    /// The limit of a node's vertices: the displacement at which the next coarser level is allowed, or more if the node itself is
+    /// nearly as far off.
+    fn limit(&self, node: Node) -> f32 {
+        let error = |node: Node| self.residents.get(&node).and_then(|resident| resident.facts);
+        if node.level == self.config().coarse_levels {
+            return f32::MAX;
+        }
+        let coarser = error(node.parent()).map_or(f32::MAX, |facts| facts.error);
+        coarser.max(error(node).map_or(0.0, |facts| facts.error) / MORPH_START)
+    }
+
+    /// How a view draws its nodes.
+    fn table(&self, view: &SelectView, fraction: f32, cover: &Cover) -> ViewTable {
+        let nobody =
+            TerrainNode { borders: [0.0; 4].into(), inner: 0.0, unused_a: 0.0, unused_b: 0.0, unused_c: 0.0 };
+        let capacity = self.statistics.capacity;
+        let (mut nodes, mut shown) = (vec![nobody; capacity], vec![0_u32; capacity.div_ceil(32)]);
+        for Leaf { node, sides } in &cover.leaves {
+            let Some(Resident { slot, .. }) = self.residents.get(node).copied() else { continue };
+            let own = self.limit(*node);
+            let border = |beside: &Beside| match beside {
+                Beside::Nothing | Beside::Finer => f32::MAX,
+                Beside::Coarser => STITCHED,
+                Beside::Same(other) => own.max(self.limit(*other)),
+            };
+            nodes[slot as usize] =
+                TerrainNode { borders: sides.each_ref().map(border).into(), inner: own, ..nobody };
+            shown[slot as usize / 32] |= 1 << (slot % 32);
+        }
+        ViewTable { nodes, shown, cameras: view.cameras, camera_count: view.camera_count, fraction }
+    }
+
+    /// Chooses what the views of a frame draw, and what the frame makes. Returns the instances that are placed anew.
+    fn choose(&mut self, views: &[SelectView], fraction: f32) -> Result<Vec<Node>, Error> {
+        self.frame += 1;
+        self.new.clear();
+        let mut moved = self.arrive();
+        let roots = self.roots(views);
+        self.statistics.refused = 0;
+        for root in &roots {
+            match self.residents.get_mut(root) {
+                Some(resident) => resident.used = self.frame,
+                None => match self.admit(*root) {
+                    Some(new) => self.new.push(new),
+                    None => self.statistics.refused += 1,
+                },
+            }
+        }
+        let (mut missing, mut tables) = (Vec::new(), Vec::new());
+        let (mut wanted, mut split, mut drawn) = (0, 0, 0);
+        for view in views {
+            let is_wanted = |node: Node| {
+                let facts = self.residents.get(&node).and_then(|resident| resident.facts);
+                facts.is_some_and(|facts| facts.error > self.allowed(view, fraction, node))
+            };
+            let cover = Cover::new(&roots, is_wanted, |node| self.residents.contains_key(&node));
+            (wanted, split, drawn) =
+                (wanted + cover.wanted.len(), split + cover.splits.len(), drawn + cover.leaves.len());
+            let children = cover.wanted.iter().flat_map(|node| node.children());
+            for node in children.chain(cover.leaves.iter().map(|leaf| leaf.node)).collect::<Vec<_>>() {
+                if let Some(resident) = self.residents.get_mut(&node) {
+                    resident.used = self.frame;
+                }
+            }
+            tables.push(self.table(view, fraction, &cover));
+            missing.extend(cover.missing);
+        }
+        let eyes: Vec<DVec3> = (views.iter())
+            .flat_map(|view| {
+                view.cameras()
+                    .iter()
+                    .map(|camera: &LodCamera| Placement::corner(view.cell.into()) + camera.eye.as_dvec3())
+            })
+            .collect();
+        missing.sort_unstable();
+        missing.dedup();
+        self.retune(missing.len());
+        self.admit_missing(&missing, &eyes);
+        *self.tables.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = tables;
+        moved.extend(self.new.iter().map(|new| new.node));
+        // A node without facts may have to be refined.
+        let unknown =
+            self.residents.values().filter(|own| own.used == self.frame && own.facts.is_none()).count();
+        let open = (wanted - split) + unknown;
+        self.statistics = EndlessStatistics {
+            nodes: self.residents.len(),
+            made: self.new.len(),
+            drawn,
+            ready: if open == 0 { 1.0 } else { (split as f32 / (split + open) as f32).min(0.999) },
+            ..self.statistics
+        };
+        Ok(moved)
+    }
+
+    /// Makes levels coarser while the nodes that are needed exceed the memory, and finer again when there is room.
+    fn retune(&mut self, missing: usize) {
+        let used = self.residents.values().filter(|resident| resident.used == self.frame).count();
+        let needed = used + BATCH * missing;
+        let capacity = self.statistics.capacity;
+        self.lod_bias = match needed {
+            needed if needed > capacity => (self.lod_bias * BIAS_STEP).min(MOST_BIAS),
+            needed if 4 * needed < 3 * capacity => (self.lod_bias / BIAS_STEP).max(1.0),
+            _ => self.lod_bias,
+        };
+    }
+
+    /// Forgets all nodes.
+    fn forget(&mut self) {
+        self.residents.clear();
+        self.lod_bias = 1.0;
+        self.free = (0..self.statistics.capacity as u32).rev().collect();
+        self.new.clear();
+    }
+}
+
+/// The facts of a node, from what the device found.
+fn facts_of(config: &TerrainConfig, node: Node, found: &NodeFacts) -> Facts {
+    let second = 2 * i64::from(found.second_difference);
+    let stitched = i64::from(found.stitched) + i64::from(found.second_difference);
+    let deviation = i64::from(found.deviation).max(if node.level > 0 { stitched } else { 0 });
+    let below = remainder(config, node.level - finer(config, node.level), second);
+    let world = |height: i64| height as f64 / HEIGHT_ONE;
+    let heights = [i64::from(found.lowest) - below, i64::from(found.highest) + below].map(world);
+    Facts { heights, error: (world(deviation + below) as f32).next_up() }
+}
+
+impl ObjectKind for Endless {
+    fn name(&self) -> &'static str {
+        "terrain"
+    }
+
+    fn is_spawned(&self) -> bool {
+        false
+    }
+
+    /// Makes all nodes afresh: the device may have missed some.
+    fn renew(&mut self, target: MakeOn<'_>, _: &mut Vec<Chunk>) -> Result<(), Error> {
+        self.pool.invalidate(target.gpu)?;
+        self.forget();
+        Ok(())
+    }
+
+    fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a> {
+        let MakeOn { gpu, layouts, .. } = target;
+        Box::pin(async move {
+            let pool = Pool::new(gpu, &self.recipe, self.statistics.capacity)?;
+            let (chunks, _) = drawn(gpu, layouts, &self.source, &pool, self.statistics.capacity)?;
+            Ok(OnDevice { chunks, other: Box::new(pool) })
+        })
+    }
+
+    fn adopt(&mut self, other: Box<dyn Made>) {
+        let other: Box<dyn Any> = other;
+        if let Ok(pool) = other.downcast() {
+            self.pool = *pool;
+            self.forget();
+        }
+    }
+
+    fn in_view(
+        &self,
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
+        number: u32,
+    ) -> Result<Option<Box<dyn KindInView>>, Error> {
+        let (spacing, capacity) = (self.config().terrain_scale, self.statistics.capacity);
+        let in_view = EndlessInView::new(gpu, layouts, (spacing, number), (capacity, self.tables.clone()))?;
+        Ok(Some(Box::new(in_view)))
+    }
+
+    fn provide(
+        &mut self,
+        gpu: &Gpu,
+        _: &SceneLayouts,
+        seen: &SeenBy<'_>,
+        _: &mut Vec<Chunk>,
+    ) -> Result<Provided, Error> {
+        let moved = self.choose(seen.views, seen.object.metric_scale * self.lod_bias)?;
+        self.pool.make(gpu, &self.recipe.config, &self.new)?;
+        let placed = moved.into_iter().filter_map(|node| Some((node, self.residents.get(&node)?.slot)));
+        let placed = placed.map(|(node, slot)| {
+            let (placement, sphere) = self.placed(node)?;
+            Ok((slot, placement, sphere))
+        });
+        let placed = placed.collect::<Result<_, InputError>>()?;
+        Ok(Provided { lod_bias: self.lod_bias, placed, ..Provided::default() })
+    }
+
+    fn stage(&mut self, staged: &mut Staged, _: &Frame, _: f64) -> Result<(), Error> {
+        self.pool.stage(staged, &self.recipe.config, &self.new)
+    }
+
+    fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        let reads = self.residents.values().any(|resident| resident.facts.is_none());
+        self.pool.record(encoder, self.frame, reads);
+    }
+
+    /// The first hit of a ray on the finest ground. The coarsest nodes answer for all others.
+    fn hit(&self, instance: &Placed, ray: &UnitRay) -> Result<Option<SurfaceHit>, InputError> {
+        let own = self.residents.iter().find(|(_, resident)| resident.slot == instance.index);
+        let Some((node, _)) = own.filter(|(node, _)| node.level == self.config().coarse_levels) else {
+            return Ok(None);
+        };
+        self.ground.hit(self.node_box(*node), Placement::corner(instance.cell) + ray.origin, ray)
+    }
+
+    fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {
+        Ok(instance.sphere_box)
+    }
+
+    fn wide_box(&self, instance: &Placed) -> Result<Option<[DVec3; 2]>, InputError> {
+        Ok(Some(instance.sphere_box))
+    }
+}

@@ -1,0 +1,229 @@
+//! The nodes of an endless terrain on the device: tiles of heights in a pool of fixed size, and the jobs that make them.
+
+use crate::gpu::{Buffer, Gpu, Job, ReadbackRing, Staged, Upload as _};
+use crate::scene::FRAMES_IN_FLIGHT;
+use crate::shared::render::scene_terrain::TerrainPatch;
+use crate::terrain::config::TerrainConfig;
+use crate::terrain::cover::TILES_PERIOD;
+use crate::terrain::features::Features;
+use crate::terrain::generator::Generator;
+use crate::terrain::height::{HeightBuffers, HeightJob, HeightScratch};
+use crate::terrain::node::{NODE_FACTS, NODE_MARGIN, NodeBuffers, NodeFacts, NodePass, NodeShape};
+use crate::terrain::quadtree::Node;
+use crate::terrain::recipe::Recipe;
+use crate::terrain::window::Regions;
+use crate::{Error, InputError};
+
+/// Number of nodes in a batch.
+pub(super) const BATCH: usize = 4;
+
+/// Largest number of levels by which the heights from which a node is made are finer than the node. The node's deviation from them
+/// is exact; what lies below is bounded.
+const MOST_FINER: u32 = 3;
+
+/// Largest number of cells along an edge of a node's finer heights, unless the node itself has more.
+const MOST_CELLS: u32 = 512;
+
+/// A slot that no batch writes.
+const NO_SLOT: u32 = u32::MAX;
+
+/// The tiles of nodes on the device.
+#[derive(Debug)]
+pub(super) struct Pool {
+    /// Heights of the nodes, with a margin.
+    pub tiles: Buffer<i32>,
+    /// The node of each tile.
+    pub patches: Buffer<TerrainPatch>,
+    facts: Buffer<u32>,
+    ring: ReadbackRing<u64>,
+    generator: Generator,
+    pass: NodePass,
+    heights: Buffer<i32>,
+    scratch: HeightScratch,
+    /// The jobs of each level, one for each of a frame's batches of this level.
+    jobs: Vec<Vec<BatchJob>>,
+    /// Index of the job of each batch of the frame: its level and its number.
+    batches: Vec<[usize; 2]>,
+    staged: usize,
+}
+
+/// The jobs that make up to [`BATCH`] nodes of one level.
+#[derive(Debug)]
+struct BatchJob {
+    heights: HeightJob,
+    slots: Buffer<u32>,
+    nodes: Job,
+}
+
+/// A node to make, and its tile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct NewNode {
+    pub node: Node,
+    pub slot: u32,
+}
+
+/// Number of levels by which the heights from which a node of a level is made are finer.
+pub(super) fn finer(config: &TerrainConfig, level: u32) -> u32 {
+    let cells = config.patch_size - 1;
+    (MOST_CELLS / cells).max(1).ilog2().min(MOST_FINER).min(level)
+}
+
+/// Width of a tile in samples.
+pub(super) fn tile_width(config: &TerrainConfig) -> u32 {
+    NodeShape { size: config.patch_size, finer: 0 }.tile_width()
+}
+
+impl Pool {
+    /// Allocates a pool of `capacity` tiles.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn new(gpu: &Gpu, recipe: &Recipe, capacity: usize) -> Result<Self, Error> {
+        let config = &recipe.config;
+        let shapes = (0..=config.coarse_levels)
+            .map(|level| NodeShape { size: config.patch_size, finer: finer(config, level) });
+        let width = shapes.map(NodeShape::region_width).max().unwrap_or(0);
+        // The largest scratch is that of the widest regions with the most subdivisions.
+        let regions = Regions { count: BATCH as u32, width, coarser: 0 };
+        let words = capacity * NODE_FACTS as usize;
+        Ok(Self {
+            tiles: Buffer::new(gpu, "terrain nodes", capacity * (tile_width(config) as usize).pow(2))?,
+            patches: Buffer::new(gpu, "patches", capacity)?,
+            facts: Buffer::new(gpu, "facts of nodes", words)?,
+            ring: ReadbackRing::new(gpu, "facts of nodes", FRAMES_IN_FLIGHT, 4 * words as u64)?,
+            generator: Generator::new(gpu, recipe.clone())?,
+            pass: NodePass::new(gpu)?,
+            heights: Buffer::new(gpu, "finer heights", BATCH * (width as usize).pow(2))?,
+            scratch: HeightScratch::for_regions(gpu, config, regions)?,
+            jobs: (0..=config.coarse_levels).map(|_| Vec::new()).collect(),
+            batches: Vec::new(),
+            staged: 0,
+        })
+    }
+
+    /// The facts of all tiles, and the number of the frame after which they were copied; `None` if none have arrived.
+    pub fn arrived(&mut self) -> Option<(u64, Vec<Option<NodeFacts>>)> {
+        let (frame, bytes) = self.ring.take()?;
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
+        let facts = words.as_chunks::<{ NODE_FACTS as usize }>().0.iter();
+        Some((frame, facts.map(|words| NodeFacts::from_words(*words)).collect()))
+    }
+
+    /// Forgets readbacks that have not arrived.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn invalidate(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        self.batches.clear();
+        Ok(self.ring.invalidate(gpu)?)
+    }
+
+    /// Prepares the jobs that make nodes in this frame, and stages what they read.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn make(&mut self, gpu: &Gpu, config: &TerrainConfig, new: &[NewNode]) -> Result<(), Error> {
+        self.batches.clear();
+        for level in 0..self.jobs.len() {
+            let count = new.iter().filter(|new| new.node.level as usize == level).count().div_ceil(BATCH);
+            while self.jobs[level].len() < count {
+                let job = self.job(gpu, config, level as u32)?;
+                self.jobs[level].push(job);
+            }
+            self.batches.extend((0..count).map(|number| [level, number]));
+        }
+        Ok(())
+    }
+
+    fn job(&self, gpu: &Gpu, config: &TerrainConfig, level: u32) -> Result<BatchJob, Error> {
+        let shape = NodeShape { size: config.patch_size, finer: finer(config, level) };
+        let (width, coarser) = (shape.region_width(), level - shape.finer);
+        let regions = Regions { count: BATCH as u32, width, coarser };
+        let output = HeightBuffers { output: &self.heights, scratch: &self.scratch };
+        let slots = Buffer::new(gpu, "slots of nodes", BATCH)?;
+        let buffers =
+            NodeBuffers { heights: &self.heights, slots: &slots, tiles: &self.tiles, facts: &self.facts };
+        let nodes = self.pass.prepare(gpu, shape, BATCH as u32, buffers)?;
+        Ok(BatchJob { heights: self.generator.prepare_regions(gpu, regions, output)?, slots, nodes })
+    }
+
+    /// Stages what the jobs of the frame read, and the patches of new nodes.
+    ///
+    /// # Errors
+    /// [`InputError`] for a node beyond the world; [`crate::gpu::GpuError`].
+    pub fn stage(&self, staged: &mut Staged, config: &TerrainConfig, new: &[NewNode]) -> Result<(), Error> {
+        for level in 0..self.jobs.len() {
+            let own: Vec<NewNode> =
+                new.iter().filter(|new| new.node.level as usize == level).copied().collect();
+            for (job, batch) in self.jobs[level].iter().zip(own.chunks(BATCH)) {
+                let mut slots = [NO_SLOT; BATCH];
+                slots.iter_mut().zip(batch).for_each(|(slot, new)| *slot = new.slot);
+                staged.elements(&job.slots, 0, &slots)?;
+                let firsts: Vec<[i64; 2]> = batch.iter().map(|new| first_of(config, new.node)).collect();
+                job.heights.stage_regions(staged, &firsts, &Features::default())?;
+            }
+        }
+        for new in new {
+            staged.elements(&self.patches, new.slot as usize, &[patch_of(config, *new)])?;
+            let none = [0; NODE_FACTS as usize];
+            staged.elements(&self.facts, new.slot as usize * NODE_FACTS as usize, &none)?;
+        }
+        Ok(())
+    }
+
+    /// Records the jobs of the frame; if `reads_facts`, also a copy of all facts to the host.
+    pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64, reads_facts: bool) {
+        for [level, number] in self.batches.drain(..) {
+            let job = &self.jobs[level][number];
+            job.heights.record(encoder);
+            job.nodes.record(encoder);
+            self.staged += 1;
+        }
+        if reads_facts {
+            let facts = &self.facts;
+            self.ring.record(encoder, frame, |encoder, to| {
+                encoder.copy_buffer_to_buffer(facts.raw(), 0, to, 0, facts.bytes());
+            });
+        }
+    }
+}
+
+/// The first sample of the region of finer heights of a node.
+pub(super) fn first_of(config: &TerrainConfig, node: Node) -> [i64; 2] {
+    let (cells, finer) = (i64::from(config.patch_size) - 1, finer(config, node.level));
+    node.at.map(|at| (i64::from(at) * cells - i64::from(NODE_MARGIN)) << finer)
+}
+
+/// A node in the format of the shader that draws it.
+fn patch_of(config: &TerrainConfig, NewNode { node, slot }: NewNode) -> TerrainPatch {
+    let edge = (config.patch_size as i32 - 1) << node.level;
+    let tiles = config.tiles_per_patch() * f64::from(1 << node.level);
+    TerrainPatch {
+        origin: node.at.map(|at| at.wrapping_mul(edge)),
+        uv: node.at.map(|at| (f64::from(at) * tiles).rem_euclid(f64::from(TILES_PERIOD)) as f32),
+        window: slot,
+        level: node.level,
+    }
+}
+
+/// Checks what endless terrain can be made of.
+///
+/// # Errors
+/// [`InputError`] for a recipe out of bounds, without `seamless` borders, or with what nodes are not made with.
+pub(super) fn check(recipe: &Recipe) -> Result<(), InputError> {
+    recipe.validate(&[], 0)?;
+    let refused = |field: &str, bound: &str| Err(InputError::new(field, "given", bound));
+    if recipe.config.border != crate::terrain::config::Border::Seamless {
+        return refused(
+            "border",
+            "must be \"seamless\" where terrain is endless: patches alone make no plane",
+        );
+    }
+    if !recipe.features.is_empty() {
+        return refused("features", "must not be given where terrain is endless");
+    }
+    if recipe.apron(0) > 0 {
+        return refused("recipe", "must have no despiking and no erosion where terrain is endless");
+    }
+    Ok(())
+}
