@@ -26,9 +26,13 @@ mod levels;
 pub mod materials;
 pub mod mesh;
 pub mod morph;
+pub mod noise;
 pub mod normals;
 pub mod pad;
 pub mod recipe;
+#[cfg(feature = "gpu")]
+pub mod regions;
+pub mod remainder;
 pub mod smooth;
 pub mod texture;
 pub mod thermal;
