@@ -4,6 +4,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use relievo::gpu::{Gpu, Options};
+use relievo::ops::terrain::config::HeightInterpolation;
 use relievo::render::{Layer, Offscreen, Renderer};
 use relievo::scene::{Camera, EndlessLimits, Quality, Scene, TerrainConfig, TerrainSource};
 
@@ -13,7 +14,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "horizon.png".to_owned());
     let gpu = Gpu::headless(&Options::default())?;
     let mut scene = Scene::new(&gpu)?;
-    let config = TerrainConfig { coarse_levels: 8, ..TerrainConfig::new(65, 1400.0, "horizon")? };
+    let config = TerrainConfig {
+        coarse_levels: 8,
+        interpolation: HeightInterpolation::Smooth,
+        ..TerrainConfig::new(65, 1400.0, "horizon")?
+    };
     let land = scene.add_terrain(&TerrainSource::endless(config).with_limits(EndlessLimits::default()))?;
     let ground = scene.ground(land, 0.0, 0.0)?.ok_or("no ground")?.height;
     let target = Offscreen::new(&gpu, SIZE)?;

@@ -87,6 +87,25 @@ fn strip_height(region: u32, side: u32, along: u32, depth: u32) -> i32 {
     return height_at(region, at.x, at.y);
 }
 
+// Deviation of the middle of a finer cell from an edge of the triangles of a stitched border. One of the two edges to J crosses the
+// diagonals of the finer cells: A to J on the west and north sides, B to J on the others. 0 for samples that are not on this edge. The
+// middle's height is rounded down, hence + 1.
+fn across_deviation(region: u32, side: u32, along: u32, depth: u32) -> u32 {
+    let step = 1u << params.finer;
+    let first = min(along / (2u * step), (params.size - 3u) / 2u) * 2u * step;
+    let is_back = (side & 1u) != 0u;
+    if select(along - first, first + 2u * step - along, is_back) != depth {
+        return 0u;
+    }
+    let start = strip_height(region, side, select(first, first + 2u * step, is_back), 0u);
+    let middle = strip_height(region, side, first + step, step);
+    let next = select(along + 1u, along - 1u, is_back);
+    let inside = strip_height(region, side, along, depth + 1u);
+    let beside = strip_height(region, side, next, depth);
+    let own = (inside >> 1u) + (beside >> 1u) + (inside & beside & 1);
+    return apart(own, start + towards(start, middle, 2u * depth + 1u, params.finer + 1u)) + 1u;
+}
+
 // Deviation of a finer sample beside a side of the node from the triangles of the stitched border.
 fn stitched_deviation(region: u32, side: u32, along: u32, depth: u32) -> u32 {
     let step = 1u << params.finer;
@@ -99,8 +118,8 @@ fn stitched_deviation(region: u32, side: u32, along: u32, depth: u32) -> u32 {
     let own = strip_height(region, side, along, depth);
     if at >= depth && !is_far {
         let other = strip_height(region, side, first + 2u * step, 0u);
-        return apart(own, start + towards(start, middle, depth, params.finer)
-            + towards(start, other, at - depth, params.finer + 1u));
+        return max(across_deviation(region, side, along, depth), apart(own,
+            start + towards(start, middle, depth, params.finer) + towards(start, other, at - depth, params.finer + 1u)));
     }
     let near = select(at, 2u * step - at, is_far);
     let inner = strip_height(region, side, first + select(0u, 2u * step, is_far), step);
@@ -141,6 +160,10 @@ fn second_difference_at(region: u32, x: u32, y: u32) -> u32 {
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    if lane < NODE_FACTS {
+        atomicStore(&most[lane], 0u);
+    }
+    workgroupBarrier();
     let slot = slots[min(id.z, params.count - 1u)];
     let tile_width = params.size + 2u * NODE_MARGIN;
     let is_there = slot < arrayLength(&facts) / NODE_FACTS;

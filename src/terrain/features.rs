@@ -9,7 +9,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::terrain::config::{Border, HEIGHT_LIMIT, HEIGHT_ONE, PATCH_EDGE, TerrainConfig};
+use crate::terrain::config::{Border, HEIGHT_LIMIT, HEIGHT_ONE, HeightGenerator, PATCH_EDGE, TerrainConfig};
 use crate::terrain::config::{from_json_object, read_text};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::pad::reference::pad;
@@ -135,8 +135,18 @@ impl Features {
     /// Refuses features whose heights could overflow when the configuration's random offsets are added.
     ///
     /// # Errors
-    /// [`InputError`] when a height with these features could exceed the range of fixed-point heights.
+    /// [`InputError`] when a height with these features could exceed the range of fixed-point heights, and for features with a
+    /// generator other than diamond-square.
     pub fn check(&self, config: &TerrainConfig) -> Result<(), InputError> {
+        let bound =
+            || "only the generator \"diamondSquare\" spreads injected heights to the samples around them";
+        let spreads = config.generator == HeightGenerator::DiamondSquare;
+        InputError::check(
+            self.is_empty() || spreads,
+            "precomputed_heights",
+            format!("[{} points]", self.len()),
+            bound,
+        )?;
         config.check_overflow(self.largest(), self.mode == FeatureMode::Additive)
     }
 

@@ -2,16 +2,16 @@
 
 use rayon::prelude::*;
 
-use super::{border, despike, height, hydraulic, pad, smooth, thermal, wrap};
+use super::{border, despike, height, hydraulic, noise, pad, smooth, thermal, wrap};
 use crate::InputError;
 use crate::terrain::border::neighbours;
-use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
+use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::pad::surrounds;
 use crate::terrain::recipe::Recipe;
 use crate::terrain::thermal::Thermal;
-use crate::terrain::window::Window;
+use crate::terrain::window::{Region, Window};
 
 /// Final heights of `patches` in 1/65536 height units, one list per patch. A list has rows of patchSize + 2·margin samples: the
 /// patch with `margin` samples on every side. Patches are generated in parallel on rayon's threads.
@@ -62,12 +62,8 @@ pub fn generate(
     apron: u32,
 ) -> Vec<Vec<i32>> {
     if config.border == Border::Seamless {
-        let made = match config.interpolation {
-            HeightInterpolation::Linear => height::reference::height,
-            HeightInterpolation::Smooth => smooth::reference::smooth,
-        };
         let window =
-            |patch: &[i32; 2]| made(config, features, Window { patch: *patch, apron }.region(config));
+            |patch: &[i32; 2]| region(config, features, Window { patch: *patch, apron }.region(config));
         return patches.par_iter().map(window).collect();
     }
     let mut fields: Vec<_> =
@@ -89,6 +85,20 @@ pub fn generate(
             )
         })
         .collect()
+}
+
+/// Heights of a region of `seamless` terrain, by the generator of the configuration, before despiking and erosion. The region
+/// must be valid ([`Region::validate`]).
+pub fn region(config: &TerrainConfig, features: &Features, region: Region) -> Vec<i32> {
+    match (config.generator, config.interpolation) {
+        (HeightGenerator::DiamondSquare, HeightInterpolation::Linear) => {
+            height::reference::height(config, features, region)
+        }
+        (HeightGenerator::DiamondSquare, HeightInterpolation::Smooth) => {
+            smooth::reference::smooth(config, features, region)
+        }
+        _ => noise::reference::noise(config, region),
+    }
 }
 
 /// Despikes and erodes a window. `injected` lists (column, row) of the window's injected points, sorted by row.

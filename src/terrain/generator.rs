@@ -9,27 +9,25 @@ mod erosion;
 use crate::Error;
 use crate::gpu::{Gpu, GpuError};
 use crate::terrain::border::{BorderPass, neighbours};
-use crate::terrain::config::{Border, HeightInterpolation};
+use crate::terrain::config::Border;
 use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::Fields;
-use crate::terrain::height::{HeightBuffers, HeightJob, HeightPass, HeightScratch};
+use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::hydraulic::HydraulicPass;
-use crate::terrain::levels::LevelPass;
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
-use crate::terrain::smooth::SmoothPass;
+use crate::terrain::regions::RegionPass;
 use crate::terrain::thermal::ThermalPass;
 use crate::terrain::window::Lattice;
-use crate::terrain::window::{Regions, Window, Windows};
-use crate::terrain::wrap::WrapPass;
+use crate::terrain::window::{Window, Windows};
 use erosion::after;
 
 /// Generates the fields of patches according to one recipe.
 #[derive(Debug, Clone)]
 pub struct Generator {
     recipe: Recipe,
-    levels: LevelPass,
+    regions: RegionPass,
     border: BorderPass,
     pad: PadPass,
     despike: DespikePass,
@@ -45,13 +43,9 @@ impl Generator {
     /// [`crate::InputError`] for a recipe out of bounds; [`GpuError`].
     pub fn new(gpu: &Gpu, recipe: Recipe) -> Result<Self, Error> {
         recipe.validate(&[], 0)?;
-        let (offset, injection) = (recipe.config.offset, recipe.features.injection());
+        let injection = recipe.features.injection();
         Ok(Self {
-            levels: match (recipe.config.border, recipe.config.interpolation) {
-                (Border::Seamless, HeightInterpolation::Linear) => HeightPass::new(gpu, offset, injection)?.0,
-                (Border::Seamless, HeightInterpolation::Smooth) => SmoothPass::new(gpu, offset, injection)?.0,
-                _ => WrapPass::new(gpu, offset, injection)?.0,
-            },
+            regions: RegionPass::new(gpu, &recipe.config, injection)?,
             border: BorderPass::new(gpu)?,
             pad: PadPass::new(gpu)?,
             despike: match injection {
@@ -131,19 +125,6 @@ impl Generator {
         Ok(parts)
     }
 
-    /// Prepares the generation of regions of the plane before despiking and erosion. The recipe must be `seamless` and without features.
-    ///
-    /// # Errors
-    /// [`crate::InputError`] for regions coarser than the base lattice, and for buffers that are too short; [`GpuError`].
-    pub(crate) fn prepare_regions(
-        &self,
-        gpu: &Gpu,
-        regions: Regions,
-        buffers: HeightBuffers<'_>,
-    ) -> Result<HeightJob, Error> {
-        self.levels.prepare_regions(gpu, &self.recipe.config, regions, 0, buffers)
-    }
-
     async fn windows(&self, gpu: &Gpu, patches: &[[i32; 2]], apron: u32) -> Result<Fields, Error> {
         let capacity = patches.iter().map(|patch| self.seen_features(Window { patch: *patch, apron })).sum();
         self.generated(gpu, patches, apron, capacity).await
@@ -162,9 +143,9 @@ impl Generator {
         let fields = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, count)?;
         let scratch = HeightScratch::new(gpu, config, Windows { count, apron })?;
         let buffers = HeightBuffers { output: &fields.heights, scratch: &scratch };
-        let job = self.levels.prepare(gpu, config, Windows { count, apron }, capacity, buffers)?;
+        let job = self.regions.prepare(gpu, config, Windows { count, apron }, capacity, buffers)?;
         job.set(gpu, patches, &self.recipe.features)?;
-        gpu.run_async(self.levels.label, |encoder| job.record(encoder)).await?;
+        gpu.run_async(self.regions.label(), |encoder| job.record(encoder)).await?;
         Ok(fields)
     }
 

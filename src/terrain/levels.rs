@@ -3,7 +3,7 @@
 
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, Upload};
 use crate::shared::terrain::level::Level;
-use crate::terrain::config::{Border, HeightInterpolation, TerrainConfig};
+use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fields::REMEDY;
 use crate::terrain::lattice::{base_lattice, corners};
@@ -61,6 +61,9 @@ impl LevelPass {
         buffers: HeightBuffers<'_>,
     ) -> Result<HeightJob, Error> {
         let (Regions { count, width, coarser }, HeightBuffers { output, scratch }) = (regions, buffers);
+        let bound = || "must be \"diamondSquare\" in this pass: NoisePass makes the others";
+        let is_square = config.generator == HeightGenerator::DiamondSquare;
+        InputError::check(is_square, "generator", format!("{:?}", config.generator).to_lowercase(), bound)?;
         // One level is subdivided at least: the output is no base lattice.
         InputError::check_within("coarser", coarser, 0..=config.levels().saturating_sub(1))?;
         let widths = level_widths(config, width, coarser);
@@ -168,12 +171,15 @@ impl HeightScratch {
         Self::for_regions(gpu, config, windows.regions(config))
     }
 
-    /// Allocates scratch memory for the generation of `regions`.
+    /// Allocates scratch memory for the generation of `regions`. Noise needs none.
     ///
     /// # Errors
     /// [`GpuError::Limit`] or [`GpuError::OutOfMemory`].
     pub fn for_regions(gpu: &Gpu, config: &TerrainConfig, regions: Regions) -> Result<Self, GpuError> {
-        let widths = level_widths(config, regions.width, regions.coarser);
+        let widths = match config.generator {
+            HeightGenerator::DiamondSquare => level_widths(config, regions.width, regions.coarser),
+            _ => vec![regions.width],
+        };
         let [first, second] = Self::points(&widths, regions.count);
         let buffer =
             |points| Buffer::new(gpu, "terrain scratch", points).map_err(|error| error.with_remedy(REMEDY));

@@ -27,10 +27,14 @@ pub mod materials;
 pub mod mesh;
 pub mod morph;
 pub mod node;
+pub mod noise;
 pub mod normals;
 pub mod pad;
 pub mod quadtree;
 pub mod recipe;
+#[cfg(feature = "gpu")]
+pub mod regions;
+pub mod remainder;
 pub mod smooth;
 pub mod texture;
 pub mod thermal;

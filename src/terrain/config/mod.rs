@@ -58,6 +58,25 @@ impl Offset {
     }
 }
 
+/// How the heights of a terrain are made. All generators are integer arithmetic on world coordinates: every device computes the
+/// same bits, and a coarser resolution has exactly every second sample of a finer one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
+#[serde(rename_all = "camelCase")]
+pub enum HeightGenerator {
+    /// Midpoint displacement by the diamond-square algorithm (thesis B section 3.3.1).
+    #[default]
+    DiamondSquare,
+    /// Spectral synthesis (fractional Brownian motion): a sum of octaves of gradient noise (Perlin, "Improving noise", SIGGRAPH
+    /// 2002; thesis B section 3.3.1). See [`noise`](crate::ops::terrain::noise).
+    Fbm,
+    /// Ridged multifractal: octaves of 1 − |noise|, whose sharp crests look like mountain ridges (Musgrave, in Texturing and
+    /// Modeling, 3rd edition, 2003, chapter 16). See [`noise`](crate::ops::terrain::noise).
+    Ridged,
+    /// Fractional Brownian motion over simplex noise, whose lattice is triangular (Perlin, "Noise hardware", 2001; Gustavson,
+    /// "Simplex noise demystified", 2005). See [`noise`](crate::ops::terrain::noise).
+    Simplex,
+}
+
 /// How a new point's height is interpolated from the coarser lattice, before the random offset is added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -105,6 +124,9 @@ pub struct TerrainConfig {
     pub coarse_levels: u32,
     /// Distribution of the random offsets. Default `signed`.
     pub offset: Offset,
+    /// How heights are made. Default `diamondSquare` (thesis B). The other generators require the border `seamless`, the offset
+    /// `signed` and the interpolation `linear`, and take no injected heights.
+    pub generator: HeightGenerator,
     /// Interpolation of new points from the coarser lattice. Default `linear`.
     pub interpolation: HeightInterpolation,
     /// How patches fit their neighbours at the borders. Default `seamless`.
@@ -139,6 +161,7 @@ impl TerrainConfig {
             roughness: 1.0,
             coarse_levels: 0,
             offset: Offset::Signed,
+            generator: HeightGenerator::DiamondSquare,
             interpolation: HeightInterpolation::Linear,
             border: Border::Seamless,
             corners: [0.0; 4],
@@ -198,6 +221,7 @@ impl TerrainConfig {
             finite(&format!("corners[{index}]"), corner, -most, most)?;
         }
         self.validate_border()?;
+        self.validate_generator()?;
         self.check_overflow(0, false)?;
         check_zone_count(self.zones.len())?;
         for (index, zone) in self.zones.iter().enumerate() {
@@ -230,6 +254,28 @@ impl TerrainConfig {
         }
     }
 
+    /// Refuses fields that have a meaning for diamond-square only.
+    fn validate_generator(&self) -> Result<(), InputError> {
+        if self.generator == HeightGenerator::DiamondSquare {
+            return Ok(());
+        }
+        let seamless =
+            "must be \"seamless\" unless generator is \"diamondSquare\": noise covers the whole plane";
+        let border = || format!("{:?}", self.border).to_lowercase();
+        InputError::check(self.border == Border::Seamless, "border", border(), || seamless)?;
+        let signed = "must be \"signed\" unless generator is \"diamondSquare\": noise has both signs";
+        let offset = || format!("{:?}", self.offset).to_lowercase();
+        InputError::check(self.offset == Offset::Signed, "offset", offset(), || signed)?;
+        let linear =
+            "must be \"linear\" unless generator is \"diamondSquare\": noise has an interpolation of its own";
+        InputError::check(
+            self.interpolation == HeightInterpolation::Linear,
+            "interpolation",
+            "smooth",
+            || linear,
+        )
+    }
+
     /// Refuses a configuration whose heights could exceed 2^30 − 1 in 1/65536 units ([`HEIGHT_LIMIT`]). `largest_feature` is the
     /// largest absolute feature height in the same units. With smooth interpolation, heights are clamped to the limit, so only an
     /// overflow before the clamp is refused.
@@ -239,6 +285,9 @@ impl TerrainConfig {
     pub(crate) fn check_overflow(&self, largest_feature: i64, additive: bool) -> Result<(), InputError> {
         if self.interpolation == HeightInterpolation::Smooth {
             return self.check_smooth(largest_feature);
+        }
+        if self.generator != HeightGenerator::DiamondSquare {
+            return self.check_noise();
         }
         let corner =
             self.corners.iter().map(|height| (height.abs() * HEIGHT_ONE).round()).fold(0.0, f64::max);
@@ -259,6 +308,18 @@ impl TerrainConfig {
             return Err(InputError::new("scale_factor", self.scale_factor, bound));
         }
         Ok(())
+    }
+
+    /// Bound of the noise generators: octave l contributes at most r_l, the random heights of the base lattice r_0, and every
+    /// octave is rounded down by less than one unit.
+    fn check_noise(&self) -> Result<(), InputError> {
+        let octaves = self.octaves(0);
+        let ranges: f64 = (0..octaves).map(|octave| self.range(octave) + 1.0).sum();
+        let highest = (self.range(0) + ranges) / HEIGHT_ONE;
+        let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
+        let bound =
+            || format!("heights could reach {highest:.5} units with these ranges; the bound is {most:.5}");
+        InputError::check(highest <= most, "scale_factor", self.scale_factor, bound)
     }
 
     fn check_smooth(&self, largest_feature: i64) -> Result<(), InputError> {
@@ -292,6 +353,24 @@ impl TerrainConfig {
     /// `coarse_levels`.
     pub fn levels(&self) -> u32 {
         self.exponent() + self.coarse_levels
+    }
+
+    /// Number of octaves of noise in the samples of a region that is `coarser` levels coarser than the terrain.
+    ///
+    /// Fbm: as many as there are subdivisions, because finer octaves are 0 at these samples; at least octave 0, which also has
+    /// the random heights of the base lattice. Ridged and simplex noise do not vanish at samples. Their octaves are the same
+    /// at every resolution, down to a lattice of 8 world coordinates (1/512 of a patch's edge).
+    pub(crate) fn octaves(&self, coarser: u32) -> u32 {
+        match self.generator {
+            HeightGenerator::DiamondSquare => 0,
+            HeightGenerator::Fbm => self.levels().saturating_sub(coarser).max(1),
+            HeightGenerator::Ridged | HeightGenerator::Simplex => self.base_log2() - 2,
+        }
+    }
+
+    /// Binary logarithm of the base lattice's spacing in integer world coordinates, 12 to 20.
+    pub(crate) fn base_log2(&self) -> u32 {
+        PATCH_EDGE.ilog2() + self.coarse_levels
     }
 
     /// Length of a patch's edge in world units.

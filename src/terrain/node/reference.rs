@@ -62,7 +62,9 @@ fn stitched(shape: NodeShape, [x, y]: [usize; 2], height: &dyn Fn(usize, usize) 
     let sides: [(&dyn Fn(usize, usize) -> i32, usize, usize); 4] =
         [(&west, y, x), (&east, y, last - x), (&north, x, y), (&south, x, last - y)];
     let mut largest = 0;
-    for (height, along, depth) in sides.into_iter().filter(|(.., depth)| *depth < step) {
+    for (side, (height, along, depth)) in
+        sides.into_iter().enumerate().filter(|(_, (.., depth))| *depth < step)
+    {
         let first = (along / (2 * step)).min((shape.size as usize - 3) / 2) * 2 * step;
         let [a, b] = [0, 2 * step].map(|at| i64::from(height(first + at, 0)));
         let [i, j, k] = [0, step, 2 * step].map(|at| i64::from(height(first + at, step)));
@@ -77,6 +79,14 @@ fn stitched(shape: NodeShape, [x, y]: [usize; 2], height: &dyn Fn(usize, usize) 
             a + towards(a, j, depth, finer) + towards(a, b, at - depth, finer + 1)
         };
         largest = largest.max(apart(height(along, depth as usize), surface));
+        // The edge to J that crosses the diagonals of the finer cells.
+        let (start, from, next) =
+            if side % 2 == 0 { (a, at, along + 1) } else { (b, rest, along.wrapping_sub(1)) };
+        if from == depth {
+            let [inside, beside] = [height(along, depth as usize + 1), height(next, depth as usize)];
+            let own = (i64::from(inside) + i64::from(beside)) >> 1;
+            largest = largest.max(apart(own as i32, start + towards(start, j, 2 * depth + 1, finer + 1)) + 1);
+        }
     }
     largest
 }

@@ -5,7 +5,8 @@ use serde::Deserialize;
 use super::Recipe;
 use crate::InputError;
 use crate::terrain::config::{
-    Border, HeightInterpolation, Object, Offset, TerrainConfig, Zone, from_json_object, named, whole,
+    Border, HeightGenerator, HeightInterpolation, Object, Offset, TerrainConfig, Zone, from_json_object,
+    named, whole,
 };
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::thermal::Thermal;
@@ -23,6 +24,8 @@ struct Raw {
     coarse_levels: u32,
     #[serde(default, deserialize_with = "named")]
     offset: Offset,
+    #[serde(default, deserialize_with = "named")]
+    generator: HeightGenerator,
     #[serde(default, deserialize_with = "named")]
     interpolation: HeightInterpolation,
     border: Option<RawBorder>,
@@ -83,6 +86,7 @@ impl Raw {
             roughness: self.roughness.unwrap_or(1.0),
             coarse_levels: self.coarse_levels,
             offset: self.offset,
+            generator: self.generator,
             interpolation: self.interpolation,
             border: self.border.map_or(Ok(Border::Seamless), RawBorder::border)?,
             corners: self.corners.map_or([0.0; 4], |corners| match corners {

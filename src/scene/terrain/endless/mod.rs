@@ -18,7 +18,6 @@ use super::drawable::{TerrainGeometry, patch_indices};
 use super::source::TerrainSource;
 use crate::animation::Frame;
 use crate::gpu::{Buffer, Gpu, Staged, Uniform};
-use crate::lod::allowed::allowed_by;
 use crate::lod::{LodCamera, SelectView};
 use crate::scene::chunk::Chunk;
 use crate::scene::instances::Instances;
@@ -50,8 +49,8 @@ use pool::{BATCH, NewNode, Pool, finer};
 /// Number of parts along an edge of a node in which the displacement that a view allows is found. A smaller part allows more.
 const PARTS: u32 = 4;
 
-/// Factor of the LOD bias from one frame to the next, while it changes.
-const BIAS_STEP: f32 = 1.05;
+/// How much coarser nodes may be that a camera does not see.
+const OUTSIDE: f32 = 4.0;
 
 /// Largest LOD bias.
 const MOST_BIAS: f32 = 1024.0;
@@ -62,15 +61,15 @@ pub struct EndlessLimits {
     /// Distance in world units up to which terrain is drawn around each camera, at most one and a half edges of the coarsest nodes
     /// (`patch_size` − 1) · 2^`coarse_levels` · `terrain_scale`. `None`: as far as that.
     pub view_distance: Option<f64>,
-    /// Largest number of nodes to make in a frame, 16 to 1024. Default: 16.
+    /// Largest number of nodes to make in a frame, 16 to 1024. Default: 32.
     pub nodes_per_frame: u32,
-    /// Number of nodes for which there is memory, 256 to 65536. Default: 1024.
+    /// Number of nodes for which there is memory, 256 to 65536. Default: 2048. A node takes 4 · (`patch_size` + 4)² bytes.
     pub capacity: u32,
 }
 
 impl Default for EndlessLimits {
     fn default() -> Self {
-        Self { view_distance: None, nodes_per_frame: 16, capacity: 1024 }
+        Self { view_distance: None, nodes_per_frame: 32, capacity: 2048 }
     }
 }
 
@@ -304,9 +303,10 @@ impl Endless {
         let part = (high - low) / DVec3::new(PARTS.into(), 1.0, PARTS.into());
         let half = 0.5 * part;
         let radius = (1.000_01 * half.length()) as f32;
-        let parts = (0..PARTS * PARTS).map(|at| {
+        let parts = (0..PARTS * PARTS).flat_map(|at| {
             let at = DVec3::new(f64::from(at % PARTS), 0.0, f64::from(at / PARTS));
-            allowed_by(view.cameras(), (low + at * part + half).as_vec3(), radius, 1.0)
+            let center = (low + at * part + half).as_vec3();
+            view.cameras().iter().map(move |camera| allowed_around(camera, center, radius))
         });
         fraction * parts.fold(f32::INFINITY, f32::min)
     }
@@ -343,7 +343,8 @@ impl Endless {
         Some(NewNode { node, slot })
     }
 
-    /// Admits the nodes that the frame makes: roots first, then the children that views miss, nearest first.
+    /// Admits the nodes that the frame makes: roots first, then the children that views miss. Coarser nodes come first, since finer ones
+    /// cannot be drawn without them; of one level, the nearest.
     fn admit_missing(&mut self, missing: &[Node], eyes: &[DVec3]) {
         let distance = |node: &Node| {
             let [low, high] = self.node_box(*node);
@@ -351,7 +352,9 @@ impl Endless {
             eyes.iter().map(to).fold(f64::INFINITY, f64::min)
         };
         let mut nearest: Vec<(f64, Node)> = missing.iter().map(|node| (distance(node), *node)).collect();
-        nearest.sort_by(|one, other| one.0.total_cmp(&other.0).then(other.1.cmp(&one.1)));
+        nearest.sort_by(|one, other| {
+            other.1.level.cmp(&one.1.level).then(one.0.total_cmp(&other.0)).then(one.1.cmp(&other.1))
+        });
         nearest.dedup_by_key(|(_, node)| *node);
         for (_, parent) in nearest {
             if self.new.len() + BATCH > self.limits.nodes_per_frame as usize {
@@ -467,11 +470,11 @@ impl Endless {
         let used = self.residents.values().filter(|resident| resident.used == self.frame).count();
         let needed = used + BATCH * missing;
         let capacity = self.statistics.capacity;
-        self.lod_bias = match needed {
-            needed if needed > capacity => (self.lod_bias * BIAS_STEP).min(MOST_BIAS),
-            needed if 4 * needed < 3 * capacity => (self.lod_bias / BIAS_STEP).max(1.0),
-            _ => self.lod_bias,
-        };
+        // The number of nodes falls with the square of the allowed displacement.
+        let ratio = (needed as f32 / capacity as f32).sqrt();
+        if needed > capacity || 4 * needed < 3 * capacity {
+            self.lod_bias = (self.lod_bias * ratio.clamp(0.95, 1.25)).clamp(1.0, MOST_BIAS);
+        }
     }
 
     /// Forgets all nodes.
@@ -483,11 +486,28 @@ impl Endless {
     }
 }
 
+/// The displacement that a camera allows to a sphere if it turns towards it. Spheres that it does not see as it is may be
+/// [`OUTSIDE`] times coarser.
+fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
+    let towards = center - camera.eye;
+    let distance = towards.length();
+    if camera.perspective == 0.0 || distance <= radius {
+        return camera.allows(center, radius);
+    }
+    // The picture lies in a cone around the axis: its diagonal is at most 2.1 times the root of the number of its pixels, as long as
+    // its sides are at most 4 : 1.
+    let half_angle = (1.05 * camera.pixel_count.sqrt() / camera.focal).atan();
+    let aside = camera.ahead.angle_between(towards) - (radius / distance).asin();
+    if aside <= half_angle {
+        return camera.allows(center, radius);
+    }
+    OUTSIDE * LodCamera { ahead: towards / distance, ..*camera }.allows(center, radius)
+}
+
 /// The facts of a node, from what the device found.
 fn facts_of(config: &TerrainConfig, node: Node, found: &NodeFacts) -> Facts {
     let second = 2 * i64::from(found.second_difference);
-    let stitched = i64::from(found.stitched) + i64::from(found.second_difference);
-    let deviation = i64::from(found.deviation).max(if node.level > 0 { stitched } else { 0 });
+    let deviation = i64::from(found.deviation.max(if node.level > 0 { found.stitched } else { 0 }));
     let below = remainder(config, node.level - finer(config, node.level), second);
     let world = |height: i64| height as f64 / HEIGHT_ONE;
     let heights = [i64::from(found.lowest) - below, i64::from(found.highest) + below].map(world);

@@ -6,11 +6,12 @@ use crate::shared::render::scene_terrain::TerrainPatch;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::cover::TILES_PERIOD;
 use crate::terrain::features::Features;
-use crate::terrain::generator::Generator;
-use crate::terrain::height::{HeightBuffers, HeightJob, HeightScratch};
+use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::node::{NODE_FACTS, NODE_MARGIN, NodeBuffers, NodeFacts, NodePass, NodeShape};
 use crate::terrain::quadtree::Node;
 use crate::terrain::recipe::Recipe;
+use crate::terrain::regions::{RegionJob, RegionPass};
+use crate::terrain::remainder::remainder_reach;
 use crate::terrain::window::Regions;
 use crate::{Error, InputError};
 
@@ -36,7 +37,7 @@ pub(super) struct Pool {
     pub patches: Buffer<TerrainPatch>,
     facts: Buffer<u32>,
     ring: ReadbackRing<u64>,
-    generator: Generator,
+    generator: RegionPass,
     pass: NodePass,
     heights: Buffer<i32>,
     scratch: HeightScratch,
@@ -50,7 +51,7 @@ pub(super) struct Pool {
 /// The jobs that make up to [`BATCH`] nodes of one level.
 #[derive(Debug)]
 struct BatchJob {
-    heights: HeightJob,
+    heights: RegionJob,
     slots: Buffer<u32>,
     nodes: Job,
 }
@@ -91,7 +92,7 @@ impl Pool {
             patches: Buffer::new(gpu, "patches", capacity)?,
             facts: Buffer::new(gpu, "facts of nodes", words)?,
             ring: ReadbackRing::new(gpu, "facts of nodes", FRAMES_IN_FLIGHT, 4 * words as u64)?,
-            generator: Generator::new(gpu, recipe.clone())?,
+            generator: RegionPass::new(gpu, config, None)?,
             pass: NodePass::new(gpu)?,
             heights: Buffer::new(gpu, "finer heights", BATCH * (width as usize).pow(2))?,
             scratch: HeightScratch::for_regions(gpu, config, regions)?,
@@ -144,7 +145,8 @@ impl Pool {
         let buffers =
             NodeBuffers { heights: &self.heights, slots: &slots, tiles: &self.tiles, facts: &self.facts };
         let nodes = self.pass.prepare(gpu, shape, BATCH as u32, buffers)?;
-        Ok(BatchJob { heights: self.generator.prepare_regions(gpu, regions, output)?, slots, nodes })
+        let heights = self.generator.prepare_regions(gpu, config, regions, 0, output)?;
+        Ok(BatchJob { heights, slots, nodes })
     }
 
     /// Stages what the jobs of the frame read, and the patches of new nodes.
@@ -218,6 +220,11 @@ pub(super) fn check(recipe: &Recipe) -> Result<(), InputError> {
             "border",
             "must be \"seamless\" where terrain is endless: patches alone make no plane",
         );
+    }
+    let (reach, level) = (remainder_reach(&recipe.config), recipe.config.coarse_levels);
+    if level > finer(&recipe.config, level) && reach >= NODE_MARGIN << finer(&recipe.config, level) {
+        let bound = "must be at most 129 where terrain is endless and interpolation is smooth";
+        return Err(InputError::new("patch_size", recipe.config.patch_size, bound));
     }
     if !recipe.features.is_empty() {
         return refused("features", "must not be given where terrain is endless");
