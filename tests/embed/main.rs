@@ -8,6 +8,7 @@ mod chunks;
 #[cfg(unix)]
 mod cost;
 mod counts;
+mod endless;
 mod frame;
 mod geomorph;
 mod health;

@@ -49,6 +49,9 @@ use pool::{BATCH, NewNode, Pool, finer};
 /// Number of parts along an edge of a node in which the displacement that a view allows is found. A smaller part allows more.
 const PARTS: u32 = 4;
 
+/// A node is made before it is needed: as soon as this fraction of the allowed displacement is exceeded.
+const SOON: f32 = 0.8;
+
 /// How much coarser nodes may be that a camera does not see.
 const OUTSIDE: f32 = 4.0;
 
@@ -297,18 +300,24 @@ impl Endless {
         roots
     }
 
-    /// The displacement that a view allows to a node, in world units. `fraction` is the part that levels of detail may use.
-    fn allowed(&self, view: &SelectView, fraction: f32, node: Node) -> f32 {
+    /// Whether a node's error exceeds the displacement that a view allows. `fraction` is the part of the displacement that counts.
+    fn is_beyond(&self, view: &SelectView, fraction: f32, node: Node) -> bool {
+        let Some(Facts { error, .. }) = self.residents.get(&node).and_then(|resident| resident.facts) else {
+            return false;
+        };
         let [low, high] = self.node_box(node).map(|at| at - Placement::corner(view.cell.into()));
-        let part = (high - low) / DVec3::new(PARTS.into(), 1.0, PARTS.into());
-        let half = 0.5 * part;
-        let radius = (1.000_01 * half.length()) as f32;
-        let parts = (0..PARTS * PARTS).flat_map(|at| {
-            let at = DVec3::new(f64::from(at % PARTS), 0.0, f64::from(at / PARTS));
-            let center = (low + at * part + half).as_vec3();
-            view.cameras().iter().map(move |camera| allowed_around(camera, center, radius))
-        });
-        fraction * parts.fold(f32::INFINITY, f32::min)
+        // A sphere around parts of the node allows more than one around the whole node.
+        let allows = |parts: u32| {
+            let part = (high - low) / DVec3::new(parts.into(), 1.0, parts.into());
+            let half = 0.5 * part;
+            let radius = (1.000_01 * half.length()) as f32;
+            (0..parts * parts).all(|at| {
+                let at = DVec3::new(f64::from(at % parts), 0.0, f64::from(at / parts));
+                let center = (low + at * part + half).as_vec3();
+                view.cameras().iter().all(|camera| error <= fraction * allowed_around(camera, center, radius))
+            })
+        };
+        !allows(1) && !allows(PARTS)
     }
 
     /// Stores the facts that have arrived. Returns the nodes whose facts are new.
@@ -419,24 +428,33 @@ impl Endless {
                 },
             }
         }
-        let (mut missing, mut tables) = (Vec::new(), Vec::new());
-        let (mut wanted, mut split, mut drawn) = (0, 0, 0);
+        let (mut missing, mut soon, mut tables) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut wanted, mut split, mut drawn, mut unknown) = (0, 0, 0, 0);
         for view in views {
-            let is_wanted = |node: Node| {
-                let facts = self.residents.get(&node).and_then(|resident| resident.facts);
-                facts.is_some_and(|facts| facts.error > self.allowed(view, fraction, node))
-            };
+            let is_wanted = |node: Node| self.is_beyond(view, fraction, node);
             let cover = Cover::new(&roots, is_wanted, |node| self.residents.contains_key(&node));
             (wanted, split, drawn) =
                 (wanted + cover.wanted.len(), split + cover.splits.len(), drawn + cover.leaves.len());
-            let children = cover.wanted.iter().flat_map(|node| node.children());
-            for node in children.chain(cover.leaves.iter().map(|leaf| leaf.node)).collect::<Vec<_>>() {
+            let leaves = cover.leaves.iter().map(|leaf| leaf.node);
+            let near: Vec<Node> = leaves
+                .clone()
+                .filter(|node| node.level > 0 && self.is_beyond(view, SOON * fraction, *node))
+                .collect();
+            let children = cover.wanted.iter().chain(&near).flat_map(|node| node.children());
+            for node in children.chain(leaves).collect::<Vec<_>>() {
                 if let Some(resident) = self.residents.get_mut(&node) {
                     resident.used = self.frame;
                 }
             }
+            // A node without facts may have to be refined.
+            let is_unknown = |leaf: &&Leaf| {
+                let facts = self.residents.get(&leaf.node).and_then(|resident| resident.facts);
+                leaf.node.level > 0 && facts.is_none()
+            };
+            unknown += cover.leaves.iter().filter(is_unknown).count();
             tables.push(self.table(view, fraction, &cover));
             missing.extend(cover.missing);
+            soon.extend(near);
         }
         let eyes: Vec<DVec3> = (views.iter())
             .flat_map(|view| {
@@ -449,11 +467,9 @@ impl Endless {
         missing.dedup();
         self.retune(missing.len());
         self.admit_missing(&missing, &eyes);
+        self.admit_missing(&soon, &eyes);
         *self.tables.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = tables;
         moved.extend(self.new.iter().map(|new| new.node));
-        // A node without facts may have to be refined.
-        let unknown =
-            self.residents.values().filter(|own| own.used == self.frame && own.facts.is_none()).count();
         let open = (wanted - split) + unknown;
         self.statistics = EndlessStatistics {
             nodes: self.residents.len(),
