@@ -7,7 +7,7 @@ use relievo::ops::terrain::config::HeightInterpolation;
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::smooth::reference::smooth;
 use relievo::ops::terrain::window::Region;
-use relievo::render::{Layer, Offscreen, Renderer, TargetFormat};
+use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
     Camera, EndlessLimits, ObjectId, Placement, Quality, Scene, TerrainConfig, TerrainSource, View,
 };
@@ -124,6 +124,271 @@ fn largest(offsets: &[Option<DVec2>]) -> f64 {
 /// Rounding of drawn positions, in pixels.
 const ROUNDING: f64 = 0.01;
 
+/// Every `step`-th of the positions; the others are left out.
+fn some(drawn: &[Option<DVec3>], step: usize) -> Vec<Option<DVec3>> {
+    drawn.iter().enumerate().map(|(at, place)| place.filter(|_| at % step == 0)).collect()
+}
+
+/// Pixels of the sky below a pixel of the ground: a ray below one that meets the ground meets it, too.
+fn holes(drawn: &[Option<DVec3>], [width, height]: [u32; 2]) -> usize {
+    let column = |x: u32| {
+        let shows = (0..height).map(|y| drawn[(y * width + x) as usize].is_some());
+        shows.skip_while(|is_ground| !is_ground).filter(|is_ground| !is_ground).count()
+    };
+    (0..width).map(column).sum()
+}
+
+/// What a flight shows.
+#[derive(Debug, Default)]
+struct Flight {
+    holes: usize,
+    /// The largest displacement and the largest jump, in pixels, of frames with all detail and of the others.
+    ready: [f64; 2],
+    rest: [f64; 2],
+    points: usize,
+    ready_frames: usize,
+    made: usize,
+    most_made: usize,
+    drawn: usize,
+    triangles: u64,
+    most_triangles: u64,
+    record_milliseconds: f64,
+}
+
+/// How to fly.
+struct Path {
+    from: [f64; 2],
+    frames: usize,
+    /// Metres to fly to the north, and height above the ground at the end. The height is 2 at first.
+    metres: f64,
+    height: f64,
+    /// Every so many frames are compared with the finest heights, at every so many pixels.
+    every: usize,
+    step: usize,
+}
+
+/// Flies, and looks at each frame.
+fn flight(world: &mut World, config: &TerrainConfig, path: &Path) -> Flight {
+    let Path { from, frames, metres, height, every, step } = *path;
+    let mut flight = Flight::default();
+    let start = world.above(from, 2.0);
+    world.view.set(start).expect("valid");
+    world.settle();
+    world.scene.set_statistics(true).expect("counted");
+    let at = |world: &World, frame: usize| {
+        let part = frame as f64 / frames as f64;
+        let aside = 0.2 * metres * (2.0 * part).sin();
+        world.above([from[0] + aside, from[1] - metres * part], 2.0 * (0.5 * height).powf(part))
+    };
+    let mut last: Option<(Vec<Option<DVec3>>, Vec<Option<DVec2>>)> = None;
+    for frame in 0..frames {
+        let camera = at(world, frame);
+        if let Some((_, before)) = last.take() {
+            // The same picture with the detail of the next frame: how far the surface jumps.
+            world.view.set_lod_cameras(&[camera]).expect("valid");
+            let earlier = at(world, frame - 1);
+            let drawn = some(&world.positions(&earlier), step);
+            let is_ready = world.scene.terrain_statistics(world.land).expect("endless").ready == 1.0;
+            let after = offsets(config, &earlier, &drawn);
+            let jumps = before
+                .iter()
+                .zip(&after)
+                .filter_map(|(one, other)| Some((*one.as_ref()? - *other.as_ref()?).length()));
+            let jump = jumps.fold(0.0, f64::max);
+            let of = if is_ready { &mut flight.ready } else { &mut flight.rest };
+            of[1] = of[1].max(jump);
+            world.view.set_lod_cameras(&[]).expect("valid");
+        }
+        world.view.set(camera).expect("valid");
+        let start = std::time::Instant::now();
+        let drawn = world.positions(&camera);
+        flight.record_milliseconds += start.elapsed().as_secs_f64() * 1e3;
+        flight.holes += holes(&drawn, world.raw.size);
+        let statistics = world.scene.terrain_statistics(world.land).expect("endless");
+        let is_ready = statistics.ready == 1.0;
+        flight.ready_frames += usize::from(is_ready);
+        (flight.made, flight.most_made) =
+            (flight.made + statistics.made, flight.most_made.max(statistics.made));
+        flight.drawn += statistics.drawn;
+        let triangles = world.view.statistics().map_or(0, |seen| {
+            seen.objects.iter().flat_map(|object| &object.levels).map(|level| level.triangles).sum()
+        });
+        (flight.triangles, flight.most_triangles) =
+            (flight.triangles + triangles, flight.most_triangles.max(triangles));
+        if frame % every == 0 {
+            let drawn = some(&drawn, step);
+            let found = offsets(config, &camera, &drawn);
+            flight.points += found.iter().flatten().count();
+            let of = if is_ready { &mut flight.ready } else { &mut flight.rest };
+            of[0] = of[0].max(largest(&found));
+            last = Some((drawn, found));
+        }
+    }
+    flight
+}
+
+#[test]
+fn a_flight_has_no_holes_and_keeps_its_promise() {
+    let config = config();
+    let limits = EndlessLimits { nodes_per_frame: 64, ..EndlessLimits::default() };
+    let mut world = World::new(config.clone(), limits, [160, 90]);
+    let path = Path { from: [1.0e6, 40.0], frames: 40, metres: 400.0, height: 150.0, every: 8, step: 7 };
+    let flight = flight(&mut world, &config, &path);
+    println!("{flight:?}");
+    assert_eq!(flight.holes, 0);
+    assert!(flight.most_made <= 64 && flight.made > 50, "{flight:?}");
+    assert!(flight.ready[0] <= 1.0 + ROUNDING && flight.ready[1] <= 1.0 + ROUNDING, "{flight:?}");
+    assert!(flight.ready_frames >= 30, "{flight:?}");
+}
+
+/// The same over 600 frames of 1280 × 720, at two distances from the origin. `RELIEVO_FRAMES` flies fewer frames.
+#[test]
+#[ignore = "takes a quarter of an hour"]
+fn a_long_flight() {
+    let config = TerrainConfig { coarse_levels: 8, ..config() };
+    let frames = std::env::var("RELIEVO_FRAMES").map_or(600, |frames| frames.parse().expect("a number"));
+    for from in [[1.0e6, 40.0], [1.0e7, -1.0e7]] {
+        let limits = EndlessLimits { view_distance: Some(20_000.0), ..EndlessLimits::default() };
+        let mut world = World::new(config.clone(), limits, [1280, 720]);
+        let start = std::time::Instant::now();
+        let path = Path { from, frames, metres: 5_000.0, height: 5_000.0, every: 20, step: 9 };
+        let flight = flight(&mut world, &config, &path);
+        println!("{from:?}: {flight:?}, {:.0} s", start.elapsed().as_secs_f64());
+        assert_eq!(flight.holes, 0);
+        assert!(flight.most_made <= 32, "{flight:?}");
+        assert!(flight.ready[0] <= 1.0 + ROUNDING && flight.ready[1] <= 1.0 + ROUNDING, "{flight:?}");
+    }
+}
+
+/// A picture in colour of what the view sees.
+fn picture(world: &mut World) -> image::RgbaImage {
+    let target = Offscreen::new(&world.gpu, world.raw.size).expect("made");
+    let mut renderer = Renderer::new(&world.gpu, target.format()).expect("a format");
+    renderer.prepare(&world.scene).expect("compiled");
+    let World { gpu, scene, view, .. } = world;
+    let drawn = gpu.try_run("picture", |encoder| -> Result<(), relievo::Error> {
+        scene.record(encoder, &mut [view])?;
+        Ok(target.record(encoder, [1.0, 0.0, 1.0], |pass| renderer.draw(pass, scene, view, Layer::Color))?)
+    });
+    drawn.expect("drawn");
+    target.read(gpu).expect("read")
+}
+
+/// A place that is reached from two sides, at two speeds, and at once, has one picture.
+#[test]
+fn a_place_looks_the_same_from_wherever_it_was_reached() {
+    let (place, height) = ([2_000.0, -900.0], 30.0);
+    let reached = |from: [f64; 2], frames: usize| {
+        let mut world = World::new(config(), EndlessLimits::default(), [320, 180]);
+        for frame in 0..frames {
+            let part = frame as f64 / frames as f64;
+            let at = [0, 1].map(|axis| from[axis] + (place[axis] - from[axis]) * part);
+            let camera = world.above(at, height + 400.0 * (1.0 - part));
+            world.view.set(camera).expect("valid");
+            world.frame();
+        }
+        let camera = world.above(place, height);
+        world.view.set(camera).expect("valid");
+        world.settle();
+        picture(&mut world)
+    };
+    let at_once = reached(place, 0);
+    assert!(at_once == reached([-2_000.0, 4_000.0], 25), "from the south-west");
+    assert!(at_once == reached([9_000.0, -3_000.0], 7), "from the east, faster");
+    assert!(at_once != image::imageops::flip_horizontal(&at_once), "the comparison sees no difference");
+}
+
+/// Two views far apart in one frame, and the sun's view of one of them: each shows its place.
+#[test]
+fn views_far_apart_and_a_shadow_have_their_own_detail() {
+    let config = config();
+    let mut world = World::new(config.clone(), EndlessLimits::default(), [160, 90]);
+    let (near, far) = (world.above([0.0, 0.0], 3.0), world.above([300_000.0, -80_000.0], 150.0));
+    world.view.set(near).expect("valid");
+    let mut other = world.scene.view(Quality::pixels(1.0)).expect("made");
+    other.set(far).expect("valid");
+    let mut shadow = SunShadow::new(&mut world.scene, 512).expect("made");
+    for _ in 0..40 {
+        let World { gpu, scene, view, .. } = &mut world;
+        shadow.fit(scene, &mut [&mut *view], 60.0).expect("fits");
+        let frame =
+            gpu.try_run("frame", |encoder| scene.record(encoder, &mut [view, &mut other, shadow.view()]));
+        frame.expect("recorded");
+    }
+    assert_eq!(world.scene.terrain_statistics(world.land).expect("endless").ready, 1.0);
+    for (camera, is_near) in [(near, true), (far, false)] {
+        let World { gpu, scene, view, raw, measure, .. } = &mut world;
+        shadow.fit(scene, &mut [&mut *view], 60.0).expect("fits");
+        let frame = gpu.try_run("frame", |encoder| -> Result<(), relievo::Error> {
+            scene.record(encoder, &mut [view, &mut other, shadow.view()])?;
+            let shown = if is_near { &*view } else { &other };
+            raw.pass(encoder, |pass| measure.draw(pass, scene, shown, Layer::Measure).expect("drawn"));
+            Ok(())
+        });
+        frame.expect("recorded");
+        let corner = DVec3::from(Placement { cell: camera.cell, ..Placement::default() }.world());
+        let place = |texel: [f32; 4]| {
+            (texel[3] == 1.0).then(|| corner + DVec3::new(texel[0].into(), texel[1].into(), texel[2].into()))
+        };
+        let drawn: Vec<Option<DVec3>> = raw.floats(gpu, 0).into_iter().map(place).collect();
+        assert_eq!(holes(&drawn, raw.size), 0);
+        let most = largest(&offsets(&config, &camera, &some(&drawn, 7)));
+        assert!(most <= 1.0 + ROUNDING && most > 0.01, "{most}");
+    }
+}
+
+/// Rays and points of the host are those of the finest triangles, whatever is drawn.
+#[test]
+fn the_ground_of_the_host_is_the_finest() {
+    let config = config();
+    let mut world = World::new(config.clone(), EndlessLimits::default(), [64, 36]);
+    let camera = world.above([100.0, 100.0], 500.0);
+    world.view.set(camera).expect("valid");
+    world.frame();
+    for (x, z) in [(0.25, 0.5), (-70_000.75, 33.125), (1.0e7 + 0.5, -1.0e7 - 0.25)] {
+        let point = world.scene.ground(world.land, x, z).expect("valid").expect("ground");
+        let exact = truth(&config, x, z);
+        assert!((point.height - exact).abs() < 1e-6, "{} {exact}", point.height);
+    }
+    let mut hits = 0;
+    for (at, part) in (1..40).map(|at| (at, f64::from(at) / 40.0)) {
+        let turn = 7.0 * part;
+        let direction = DVec3::new(turn.cos(), -0.02 - 0.4 * part, turn.sin()).normalize();
+        let origin = DVec3::new(100.0, truth(&config, 100.0, 100.0) + 40.0, 100.0);
+        let ray = relievo::scene::Ray::new(origin, direction);
+        let Some(hit) = world.scene.pick(&ray).expect("valid") else { continue };
+        hits += 1;
+        let [x, y, z] = hit.world().to_array();
+        assert!((y - truth(&config, x, z)).abs() < 1e-6 * hit.distance.max(1.0), "{at}: {y}");
+        // No point before the hit lies below the ground.
+        for step in 1..200 {
+            let before = origin + direction * hit.distance * f64::from(step) / 200.0;
+            assert!(before.y >= truth(&config, before.x, before.z) - 1e-6, "{at}: {before}");
+        }
+    }
+    assert!(hits > 30, "{hits}");
+}
+
+#[test]
+fn limits_and_sources_out_of_bounds_are_refused() {
+    let gpu = gpu();
+    let mut scene = Scene::new(&gpu).expect("made");
+    let mut refused = |source: TerrainSource| match scene.add_terrain(&source) {
+        Err(relievo::Error::Input(error)) => error.path,
+        other => panic!("{other:?}"),
+    };
+    let endless = |limits: EndlessLimits| TerrainSource::endless(config()).with_limits(limits);
+    let usual = EndlessLimits::default();
+    assert_eq!(refused(endless(EndlessLimits { view_distance: Some(0.0), ..usual })), "view_distance");
+    assert_eq!(refused(endless(EndlessLimits { view_distance: Some(1e6), ..usual })), "view_distance");
+    assert_eq!(refused(endless(EndlessLimits { view_distance: Some(f64::NAN), ..usual })), "view_distance");
+    assert_eq!(refused(endless(EndlessLimits { nodes_per_frame: 15, ..usual })), "nodes_per_frame");
+    assert_eq!(refused(endless(EndlessLimits { capacity: 255, ..usual })), "capacity");
+    let wrapped = TerrainConfig::new(65, 10.0, "wrap")
+        .map(|config| TerrainConfig { border: relievo::scene::TerrainBorder::Wrap, ..config });
+    assert_eq!(refused(TerrainSource::endless(wrapped.expect("valid"))), "border");
+}
+
 #[test]
 fn the_ground_is_within_a_pixel_of_the_finest_heights() {
     let config = config();
@@ -134,10 +399,12 @@ fn the_ground_is_within_a_pixel_of_the_finest_heights() {
         world.view.set(camera).expect("valid");
         let frames = world.settle();
         let drawn = world.positions(&camera);
-        let found = offsets(&config, &camera, &drawn);
+        let found = offsets(&config, &camera, &some(&drawn, 5));
         let (seen, most) = (drawn.iter().flatten().count(), largest(&found));
         let nodes = world.scene.terrain_statistics(world.land).expect("endless");
-        println!("{height} above: settled in {frames} frames; {seen} pixels, at most {most} px off; {nodes:?}");
+        println!(
+            "{height} above: settled in {frames} frames; {seen} pixels, at most {most} px off; {nodes:?}"
+        );
         assert!(most <= 1.0 + ROUNDING && most > 0.05, "{most}");
         assert!(seen > 5_000 && nodes.nodes <= nodes.capacity, "{seen} {nodes:?}");
     }
