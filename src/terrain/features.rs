@@ -138,9 +138,15 @@ impl Features {
     /// [`InputError`] when a height with these features could exceed the range of fixed-point heights, and for features with a
     /// generator other than diamond-square.
     pub fn check(&self, config: &TerrainConfig) -> Result<(), InputError> {
-        let bound = || "only the generator \"diamondSquare\" spreads injected heights to the samples around them";
+        let bound =
+            || "only the generator \"diamondSquare\" spreads injected heights to the samples around them";
         let spreads = config.generator == HeightGenerator::DiamondSquare;
-        InputError::check(self.is_empty() || spreads, "precomputed_heights", format!("[{} points]", self.len()), bound)?;
+        InputError::check(
+            self.is_empty() || spreads,
+            "precomputed_heights",
+            format!("[{} points]", self.len()),
+            bound,
+        )?;
         config.check_overflow(self.largest(), self.mode == FeatureMode::Additive)
     }
 

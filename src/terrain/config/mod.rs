@@ -259,14 +259,21 @@ impl TerrainConfig {
         if self.generator == HeightGenerator::DiamondSquare {
             return Ok(());
         }
-        let seamless = "must be \"seamless\" unless generator is \"diamondSquare\": noise covers the whole plane";
+        let seamless =
+            "must be \"seamless\" unless generator is \"diamondSquare\": noise covers the whole plane";
         let border = || format!("{:?}", self.border).to_lowercase();
         InputError::check(self.border == Border::Seamless, "border", border(), || seamless)?;
         let signed = "must be \"signed\" unless generator is \"diamondSquare\": noise has both signs";
         let offset = || format!("{:?}", self.offset).to_lowercase();
         InputError::check(self.offset == Offset::Signed, "offset", offset(), || signed)?;
-        let linear = "must be \"linear\" unless generator is \"diamondSquare\": noise has an interpolation of its own";
-        InputError::check(self.interpolation == HeightInterpolation::Linear, "interpolation", "smooth", || linear)
+        let linear =
+            "must be \"linear\" unless generator is \"diamondSquare\": noise has an interpolation of its own";
+        InputError::check(
+            self.interpolation == HeightInterpolation::Linear,
+            "interpolation",
+            "smooth",
+            || linear,
+        )
     }
 
     /// Refuses a configuration whose heights could exceed 2^30 − 1 in 1/65536 units ([`HEIGHT_LIMIT`]). `largest_feature` is the
@@ -310,7 +317,8 @@ impl TerrainConfig {
         let ranges: f64 = (0..octaves).map(|octave| self.range(octave) + 1.0).sum();
         let highest = (self.range(0) + ranges) / HEIGHT_ONE;
         let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
-        let bound = || format!("heights could reach {highest:.5} units with these ranges; the bound is {most:.5}");
+        let bound =
+            || format!("heights could reach {highest:.5} units with these ranges; the bound is {most:.5}");
         InputError::check(highest <= most, "scale_factor", self.scale_factor, bound)
     }
 

@@ -22,7 +22,7 @@
 //!   most 1.99·2^27. With a value of at most 2^27, a corner is at most 2.99·2^27. Interpolation stays between the corners, and
 //!   differences of corners are below 6·2^27 < 2^30.
 //! - At most, noise on squares is 0.993 (all gradients point to the cell's center) and simplex noise 0.938 (by search over a fine
-//!   grid; the test `noise_is_within_one` repeats it). So |v + n| < 2, and w is in 0 to 1.
+//!   grid; the test `noise_and_its_derivatives_are_bounded` repeats it). So |v + n| < 2, and w is in 0 to 1.
 //! - In simplex noise, a ramp is at most 1.41·1.008·2^27, and 8 times this is below 1.43·2^30. The sum of three contributions is at
 //!   most 0.086·2^30, and 11 times this is below 0.95·2^30.
 //! - [`TerrainConfig::validate`] refuses ranges with r_0 + Σ (r_l + 1) above the largest height, 2^30 − 1. So r_0 < 2^29.

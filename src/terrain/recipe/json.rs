@@ -5,7 +5,8 @@ use serde::Deserialize;
 use super::Recipe;
 use crate::InputError;
 use crate::terrain::config::{
-    Border, HeightGenerator, HeightInterpolation, Object, Offset, TerrainConfig, Zone, from_json_object, named, whole,
+    Border, HeightGenerator, HeightInterpolation, Object, Offset, TerrainConfig, Zone, from_json_object,
+    named, whole,
 };
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::thermal::Thermal;

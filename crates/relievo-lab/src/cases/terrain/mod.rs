@@ -7,6 +7,7 @@ pub mod height;
 pub mod hydraulic;
 mod levels;
 pub mod morph;
+pub mod noise;
 pub mod normals;
 pub mod pad;
 pub mod smooth;
