@@ -27,7 +27,7 @@
 //!
 //! A function whose second derivatives are at most H differs from right triangles with legs σ by at most σ²·H/4 (the circumradius
 //! is σ/√2). A triangle never differs by more than twice the function's largest value. The largest first and second derivatives of
-//! one octave, per spacing of its lattice, are 2.86 and 12.8 (gradient noise), 6.61 and 23.2 (with random values), and 5.74 and 35.2
+//! one octave, per spacing of its lattice, are 2.86 and 12.8 (gradient noise), 4.74 and 17.4 (with random values), and 5.74 and 35.2
 //! (simplex noise); the test `noise_and_its_derivatives_are_bounded` finds them. For `ridged`, |n| is also bent at crests: there, it differs from
 //! the triangles by at most half the largest difference between corners, plus the distance of n itself.
 //!
@@ -147,7 +147,7 @@ fn octaves(config: &TerrainConfig, coarser: u32) -> impl Iterator<Item = (f64, f
 
 fn fbm(config: &TerrainConfig, coarser: u32) -> f64 {
     let distance = |(octave, (cells, range)): (usize, (f64, f64))| {
-        let (second, most) = if octave == 0 { (23.2, 3.99) } else { (12.8, 1.99) };
+        let (second, most) = if octave == 0 { (17.4, 2.99) } else { (12.8, 1.99) };
         // Octaves whose lattices hold all samples of the region vanish there.
         let vanishes = octave > 0 && cells <= 1.0;
         range * if vanishes { 1.0 } else { f64::min(second / 4.0 / (cells * cells), most) }
@@ -158,8 +158,8 @@ fn fbm(config: &TerrainConfig, coarser: u32) -> f64 {
 fn ridged(config: &TerrainConfig, coarser: u32) -> f64 {
     // Distance of |v + n|, and its largest difference between two corners of a triangle.
     let parts = |cells: f64| {
-        let across = f64::min(6.61 * 2.0_f64.sqrt() / cells, 2.0);
-        (f64::min(across / 2.0 + 23.2 / 4.0 / (cells * cells), 2.0), across)
+        let across = f64::min(4.74 * 2.0_f64.sqrt() / cells, 1.5);
+        (f64::min(across / 2.0 + 17.4 / 4.0 / (cells * cells), 1.5), across)
     };
     let first = octaves(config, coarser).next().map_or((0.0, 0.0), |(cells, _)| parts(cells));
     let distance = |(octave, (cells, range)): (usize, (f64, f64))| {
@@ -167,8 +167,9 @@ fn ridged(config: &TerrainConfig, coarser: u32) -> f64 {
         if octave == 0 {
             return range * ridge;
         }
-        // The distance of a product of two functions of size 1, of which the first changes half as much as octave 0's ridge.
-        range * f64::min(ridge + first.0 / 2.0 + across * first.1 / 2.0, 2.0)
+        // A product f·g of size 1 differs by the distances of f and g, and by a third of the product of their differences. The
+        // weight changes half as much as octave 0's ridge.
+        range * f64::min(ridge + first.0 / 2.0 + across * first.1 / 6.0, 1.5)
     };
     octaves(config, coarser).enumerate().map(distance).sum()
 }
