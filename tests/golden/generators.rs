@@ -1,4 +1,5 @@
-//! What each generator of noise looks like: 2 × 2 patches in low light, seen at an angle. Each patch is a cell of the base lattice.
+//! What each generator of noise looks like: 2 × 2 patches in low light, seen at an angle. Each patch is a cell of the base
+//! lattice.
 
 use glam::{DVec3, Vec3};
 use relievo::asset::Light;
