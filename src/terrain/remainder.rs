@@ -15,6 +15,7 @@
 //! and 0.2774 (linear), and 0.5157, 0.394, 0.4876 and 0.5112 (smooth). The largest second difference after 4 levels is 0.2149
 //! (linear) and 0.0791 (smooth). All finer levels start from the lattice of level 4. So the bound κ at all levels satisfies κ ≤
 //! 0.2813 + 0.2149 κ (linear) and κ ≤ 0.5157 + 0.0791 κ (smooth): 0.36 and 0.561 are bounds.
+//! The test `linear_interpolation_stays_near_the_triangles` derives 0.36.
 //!
 //! **Offsets over coarse heights of 0.** Linear interpolation is a mean, so the largest distance occurs when all offsets are
 //! largest: it is the height of the surface with these offsets, which repeats from cell to cell. With smooth interpolation, the
@@ -178,6 +179,9 @@ fn ridged(config: &TerrainConfig, coarser: u32) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
+    use std::ops::RangeInclusive;
+
     use super::*;
     use crate::hash::threefry2x32;
     use crate::terrain::features::Features;
@@ -286,5 +290,132 @@ mod tests {
             let flat = TerrainConfig { scale_factor: 0.0, ..config };
             assert!(remainder(&flat, 6, 0) < 100, "{generator:?}");
         }
+    }
+
+    /// Weights of the 25 second differences and twists around a coarse cell.
+    type Weights = [f64; 25];
+
+    fn sum(terms: &[(f64, Weights)]) -> Weights {
+        std::array::from_fn(|at| terms.iter().map(|(factor, weights)| factor * weights[at]).sum())
+    }
+
+    /// Second differences, twists and distances from the coarse triangles around a coarse cell, after some levels of linear
+    /// interpolation without offsets. Each is a sum of the coarse second differences and twists. The cell has `cells`² fine cells;
+    /// one more fine cell on each side is included.
+    struct Bent {
+        cells: i32,
+        along_x: HashMap<[i32; 2], Weights>,
+        along_y: HashMap<[i32; 2], Weights>,
+        twists: HashMap<[i32; 2], Weights>,
+        distances: HashMap<[i32; 2], Weights>,
+    }
+
+    fn points(x: RangeInclusive<i32>, y: RangeInclusive<i32>) -> impl Iterator<Item = [i32; 2]> {
+        x.flat_map(move |x| y.clone().map(move |y| [x, y]))
+    }
+
+    impl Bent {
+        fn coarse() -> Self {
+            let unit = |at: usize| std::array::from_fn(|index| f64::from(u8::from(index == at)));
+            let from = |first: usize, [x, y]: [RangeInclusive<i32>; 2]| {
+                points(x, y).enumerate().map(|(at, place)| (place, unit(first + at))).collect()
+            };
+            Self {
+                cells: 1,
+                along_x: from(0, [0..=1, -1..=2]),
+                along_y: from(8, [-1..=2, 0..=1]),
+                twists: from(16, [-1..=1, -1..=1]),
+                distances: points(0..=1, 0..=1).map(|place| (place, [0.0; 25])).collect(),
+            }
+        }
+
+        /// The second difference along one axis at a point of the finer lattice. `x` runs along the axis, and `across` are the
+        /// second differences along the other axis.
+        fn along(
+            along: impl Fn(i32, i32) -> Weights,
+            across: impl Fn(i32, i32) -> Weights,
+            [x, y]: [i32; 2],
+        ) -> Weights {
+            let [i, j] = [x, y].map(|fine| fine.div_euclid(2));
+            match (x.rem_euclid(2), y.rem_euclid(2)) {
+                (0, 0) => sum(&[
+                    (0.5, along(i, j)),
+                    (1.0 / 16.0, across(i - 1, j)),
+                    (2.0 / 16.0, across(i, j)),
+                    (1.0 / 16.0, across(i + 1, j)),
+                ]),
+                (1, 0) => sum(&[(-1.0 / 8.0, across(i, j)), (-1.0 / 8.0, across(i + 1, j))]),
+                (0, _) => sum(&[(1.0 / 8.0, along(i, j)), (1.0 / 8.0, along(i, j + 1))]),
+                _ => {
+                    let four = [along(i, j), along(i + 1, j), along(i, j + 1), along(i + 1, j + 1)];
+                    sum(&four.map(|weights| (1.0 / 16.0, weights)))
+                }
+            }
+        }
+
+        fn finer(&self) -> Self {
+            let cells = 2 * self.cells;
+            let (along_x, along_y) = (|x, y| self.along_x[&[x, y]], |x, y| self.along_y[&[x, y]]);
+            let (turned_x, turned_y) = (|y, x| self.along_x[&[x, y]], |y, x| self.along_y[&[x, y]]);
+            let twist = |[x, y]: [i32; 2]| {
+                let [i, j] = [x, y].map(|fine| fine.div_euclid(2));
+                let [right, below] = [x, y].map(|fine| fine.rem_euclid(2));
+                let sign = if right == below { -1.0 / 16.0 } else { 1.0 / 16.0 };
+                sum(&[
+                    (0.25, self.twists[&[i, j]]),
+                    (sign, along_y(i, j + below)),
+                    (sign, along_y(i + 1, j + below)),
+                    (sign, along_x(i + right, j)),
+                    (sign, along_x(i + right, j + 1)),
+                ])
+            };
+            let distance = |[x, y]: [i32; 2]| {
+                let [i, j] = [x, y].map(|fine| fine.div_euclid(2));
+                let old = |x, y| (0.5, self.distances[&[x, y]]);
+                match [x, y].map(|fine| fine.rem_euclid(2)) {
+                    [0, 0] => self.distances[&[i, j]],
+                    [1, 0] => sum(&[
+                        old(i, j),
+                        old(i + 1, j),
+                        (1.0 / 16.0, along_y(i, j)),
+                        (1.0 / 16.0, along_y(i + 1, j)),
+                    ]),
+                    [0, _] => sum(&[
+                        old(i, j),
+                        old(i, j + 1),
+                        (1.0 / 16.0, along_x(i, j)),
+                        (1.0 / 16.0, along_x(i, j + 1)),
+                    ]),
+                    _ => sum(&[old(i + 1, j), old(i, j + 1), (0.25, self.twists[&[i, j]])]),
+                }
+            };
+            Self {
+                cells,
+                along_x: points(0..=cells, -1..=cells + 1)
+                    .map(|at| (at, Self::along(along_x, along_y, at)))
+                    .collect(),
+                along_y: points(-1..=cells + 1, 0..=cells)
+                    .map(|[x, y]| ([x, y], Self::along(turned_y, turned_x, [y, x])))
+                    .collect(),
+                twists: points(-1..=cells, -1..=cells).map(|at| (at, twist(at))).collect(),
+                distances: points(0..=cells, 0..=cells).map(|at| (at, distance(at))).collect(),
+            }
+        }
+
+        /// Largest value under the constraint that no coarse second difference or twist exceeds 1.
+        fn largest<'a>(weights: impl Iterator<Item = &'a Weights>) -> f64 {
+            weights.map(|weights| weights.iter().map(|weight| weight.abs()).sum()).fold(0.0, f64::max)
+        }
+    }
+
+    /// κ of linear interpolation: every distance is a sum of coarse second differences with weights that add up to at most κ.
+    #[test]
+    fn linear_interpolation_stays_near_the_triangles() {
+        let fine = (0..4).fold(Bent::coarse(), |bent, _| bent.finer());
+        let distance = Bent::largest(fine.distances.values());
+        let bent = fine.along_x.values().chain(fine.along_y.values()).chain(fine.twists.values());
+        let bent = Bent::largest(bent);
+        println!("distance {distance}, second difference {bent}, bound {}", distance / (1.0 - bent));
+        assert!(distance / (1.0 - bent) < 0.36);
     }
 }
