@@ -86,8 +86,8 @@ pub use crate::surface::{
 pub use crate::terrain::{
     blend::{Shading as TerrainShading, WeightMode},
     config::{
-        Border as TerrainBorder, BuiltIn as BuiltInTexture, HeightInterpolation, Offset as TerrainOffset,
-        Slope as TerrainSlope, TerrainConfig, Zone as TerrainZone, ZoneTexture,
+        Border as TerrainBorder, BuiltIn as BuiltInTexture, HeightGenerator, HeightInterpolation,
+        Offset as TerrainOffset, Slope as TerrainSlope, TerrainConfig, Zone as TerrainZone, ZoneTexture,
     },
     despike::Despike,
     features::{FeatureFile, Features as TerrainFeatures},

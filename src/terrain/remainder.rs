@@ -1,39 +1,38 @@
 //! Proven bounds on the detail that a coarse region leaves out, for levels of detail of a terrain.
 //!
-//! A region that is `coarser` levels coarser (see [`Region`](super::window::Region)) is drawn as triangles. The diagonal of each cell
-//! runs from south-west to north-east. [`remainder`] bounds the vertical distance between these triangles and the terrain's finest
-//! samples.
+//! A region that is `coarser` levels coarser (see [`Region`](super::window::Region)) is drawn as triangles. The diagonal of each
+//! cell runs from south-west to north-east. [`remainder`] bounds the vertical distance between these triangles and the terrain's
+//! finest samples.
 //!
 //! # Diamond-square
 //!
-//! Both interpolations are linear in the coarse heights and in the random offsets. So the distance is at most the sum of two parts.
+//! Both interpolations are linear in the coarse heights and in the random offsets. So the distance is at most the sum of two
+//! parts.
 //!
-//! **Interpolation without offsets.** The distance is a linear function of the coarse heights, and 0 for planes. Its largest value
-//! under the constraint that no second difference exceeds 1 is the solution of a linear program. Level by level, the solutions are
-//! 0.25, 0.25, 0.2813 and 0.2774 (linear), and 0.5157, 0.394, 0.4876 and 0.5112 (smooth). Points of finer levels differ from the
-//! triangles of level m by at most S/8, S/4 or T/4, where S and T are the largest second differences and twists at that level:
+//! **Interpolation without offsets.** The distance is a linear function of the coarse heights, and 0 for planes. Its largest
+//! value under the constraint that no second difference or twist exceeds 1 is the solution of a linear program, and so is the
+//! largest second difference or twist after some levels. After the levels 1 to 4, the largest distances are 0.25, 0.25, 0.2813
+//! and 0.2774 (linear), and 0.5157, 0.394, 0.4876 and 0.5112 (smooth). The largest second difference after 4 levels is 0.2149
+//! (linear) and 0.0791 (smooth). All finer levels start from the lattice of level 4. So the bound κ at all levels satisfies κ ≤
+//! 0.2813 + 0.2149 κ (linear) and κ ≤ 0.5157 + 0.0791 κ (smooth): 0.36 and 0.561 are bounds.
+//! The test `linear_interpolation_stays_near_the_triangles` derives 0.36.
 //!
-//! - Linear: a new edge point is (Y_0 + Y_1)/16 from the middle of its edge, with the second differences Y across the edge. A center
-//!   is T/4 from the middle of its diagonal. After one level, S' ≤ 3/4 S and T' ≤ T/4 + S/4. The linear program gives S = 0.215 and
-//!   T = 0.086 after 4 levels. All finer levels together add at most 0.027 / (1 − 3/4) = 0.108 to 0.2774. The bound is 0.39.
-//! - Smooth: a new edge point is the mean of one value S/8 and one value (S/8 + T/4 at the most) from its edge. The linear program
-//!   gives S = 0.0791 and T = 0.0254 after 4 levels, and S at least halves per level. All finer levels together add at most
-//!   0.0163 / (1 − 1/2) = 0.033 to 0.5157. The bound is 0.55.
-//!
-//! **Offsets over coarse heights of 0.** Linear interpolation is a mean, so the largest distance occurs when all offsets are largest:
-//! it is the height of the surface with these offsets, which repeats from cell to cell. With smooth interpolation, offsets of range r
-//! on centers and e on edges lead to at most max(r, 0.65 r + e) at the first three levels and 0.001 more at the fourth (sums of
-//! absolute weights). 5 % are added for finer levels.
+//! **Offsets over coarse heights of 0.** Linear interpolation is a mean, so the largest distance occurs when all offsets are
+//! largest: it is the height of the surface with these offsets, which repeats from cell to cell. With smooth interpolation, the
+//! effect of offsets of range r on centers and e on edges is at most a sum of absolute weights. After 6 levels, this sum plus κ
+//! times that of its second differences is at most 1.077 max(r, 0.65 r + e). (Both are convex in e and were computed for e/r = 0,
+//! 0.2, 0.3, 0.35, 0.4, 0.5, 0.7072 and 1.)
 //!
 //! Rounding counts as an offset of 1/2 (linear), and of 9/8 on centers and 1 on edges (smooth).
 //!
 //! # Noise
 //!
 //! A function whose second derivatives are at most H differs from right triangles with legs σ by at most σ²·H/4 (the circumradius
-//! is σ/√2). A triangle never differs by more than twice the function's largest value. The largest first and second derivatives of
-//! one octave, per spacing of its lattice, are 2.86 and 12.8 (gradient noise), 6.61 and 23.2 (with random values), and 5.74 and 35.2
-//! (simplex noise); the test `derivatives_are_bounded` finds them. For `ridged`, |n| is also bent at crests: there, it differs from
-//! the triangles by at most half the largest difference between corners, plus the distance of n itself.
+//! is σ/√2). A triangle never differs by more than twice the function's largest value. The largest first and second derivatives
+//! of one octave, per spacing of its lattice, are 2.86 and 12.8 (gradient noise), 4.74 and 17.4 (with random values), and 5.74
+//! and 35.2 (simplex noise); the test `noise_and_its_derivatives_are_bounded` finds them. For `ridged`, |n| is also bent at
+//! crests: there, it differs from the triangles by at most half the largest difference between corners, plus the distance of n
+//! itself.
 //!
 //! Octaves of `fbm` that are left out of the coarse region are 0 at its samples. They add their range.
 
@@ -56,15 +55,18 @@ pub fn remainder(config: &TerrainConfig, coarser: u32, second_difference: i64) -
     let bent = second_difference as f64;
     let bound = match (config.generator, config.interpolation) {
         (HeightGenerator::DiamondSquare, HeightInterpolation::Linear) => {
-            0.39 * bent + linear_offsets(config, coarser)
+            0.36 * bent + linear_offsets(config, coarser)
         }
         (HeightGenerator::DiamondSquare, HeightInterpolation::Smooth) => {
             let offsets = |levels| smooth_offsets(config, levels);
-            // Where heights may be clamped, the interpolation is not linear.
-            if 2.0 * f64::from(config.level_range(0)) + offsets(config.levels()) > HEIGHT_LIMIT as f64 {
+            // Where heights may be clamped, the interpolation is not linear. Second differences of the base lattice are at most
+            // four times its range.
+            if (1.0 + 4.0 * 0.561) * f64::from(config.level_range(0)) + offsets(config.levels())
+                > HEIGHT_LIMIT as f64
+            {
                 return 2 * HEIGHT_LIMIT;
             }
-            0.55 * bent + offsets(coarser)
+            0.561 * bent + offsets(coarser)
         }
         (HeightGenerator::Fbm, _) => fbm(config, coarser),
         (HeightGenerator::Ridged, _) => ridged(config, coarser),
@@ -129,26 +131,26 @@ fn smooth_offsets(config: &TerrainConfig, levels: u32) -> f64 {
     let offset = |level: u32| {
         let center = f64::from(config.level_range(level)) + 1.125;
         let edge = f64::from(config.edge_range(level)) + 1.0;
-        1.05 * center.max(0.65 * center + edge)
+        1.077 * center.max(0.65 * center + edge)
     };
     (config.levels() - levels..config.levels()).map(offset).sum()
 }
 
 /// For every octave: spacing of its lattice in cells of the coarse region (below 1 for finer octaves), and range with rounding.
 ///
-/// Rounding: an octave's height is rounded down by less than 1, and its value, in Q4.27, is wrong by less than 64.
+/// Rounding: an octave's height is rounded down by less than 1, and its value, in Q4.27, is wrong by less than 128.
 fn octaves(config: &TerrainConfig, coarser: u32) -> impl Iterator<Item = (f64, f64)> {
     let cell = f64::from(config.sample_spacing() as u32) * f64::from(coarser).exp2();
     (0..config.octaves(0)).map(move |octave| {
         let spacing = f64::from(config.base_log2() - octave).exp2();
         let range = f64::from(config.level_range(octave));
-        (spacing / cell, range * (1.0 + 1e-6) + 2.0)
+        (spacing / cell, range * (1.0 + 3e-6) + 2.0)
     })
 }
 
 fn fbm(config: &TerrainConfig, coarser: u32) -> f64 {
     let distance = |(octave, (cells, range)): (usize, (f64, f64))| {
-        let (second, most) = if octave == 0 { (23.2, 3.99) } else { (12.8, 1.99) };
+        let (second, most) = if octave == 0 { (17.4, 2.99) } else { (12.8, 1.99) };
         // Octaves whose lattices hold all samples of the region vanish there.
         let vanishes = octave > 0 && cells <= 1.0;
         range * if vanishes { 1.0 } else { f64::min(second / 4.0 / (cells * cells), most) }
@@ -159,8 +161,8 @@ fn fbm(config: &TerrainConfig, coarser: u32) -> f64 {
 fn ridged(config: &TerrainConfig, coarser: u32) -> f64 {
     // Distance of |v + n|, and its largest difference between two corners of a triangle.
     let parts = |cells: f64| {
-        let across = f64::min(6.61 * 2.0_f64.sqrt() / cells, 2.0);
-        (f64::min(across / 2.0 + 23.2 / 4.0 / (cells * cells), 2.0), across)
+        let across = f64::min(4.74 * 2.0_f64.sqrt() / cells, 1.5);
+        (f64::min(across / 2.0 + 17.4 / 4.0 / (cells * cells), 1.5), across)
     };
     let first = octaves(config, coarser).next().map_or((0.0, 0.0), |(cells, _)| parts(cells));
     let distance = |(octave, (cells, range)): (usize, (f64, f64))| {
@@ -168,14 +170,18 @@ fn ridged(config: &TerrainConfig, coarser: u32) -> f64 {
         if octave == 0 {
             return range * ridge;
         }
-        // The distance of a product of two functions of size 1, of which the first changes half as much as octave 0's ridge.
-        range * f64::min(ridge + first.0 / 2.0 + across * first.1 / 2.0, 2.0)
+        // A product f·g of size 1 differs by the distances of f and g, and by a third of the product of their differences. The
+        // weight changes half as much as octave 0's ridge.
+        range * f64::min(ridge + first.0 / 2.0 + across * first.1 / 6.0, 1.5)
     };
     octaves(config, coarser).enumerate().map(distance).sum()
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
+    use std::ops::RangeInclusive;
+
     use super::*;
     use crate::hash::threefry2x32;
     use crate::terrain::features::Features;
@@ -247,7 +253,7 @@ mod tests {
                     generator,
                     interpolation,
                     coarse_levels: words[0] % 4,
-                    roughness: [1.0, 0.8, 1.2, 0.5][words[1] as usize % 4],
+                    roughness: [1.0, 0.8, 3.0, 0.5][words[1] as usize % 4],
                     ..TerrainConfig::new(if node % 2 == 0 { 65 } else { 257 }, 40.0, &format!("node {node}"))
                         .expect("valid")
                 };
@@ -284,5 +290,132 @@ mod tests {
             let flat = TerrainConfig { scale_factor: 0.0, ..config };
             assert!(remainder(&flat, 6, 0) < 100, "{generator:?}");
         }
+    }
+
+    /// Weights of the 25 second differences and twists around a coarse cell.
+    type Weights = [f64; 25];
+
+    fn sum(terms: &[(f64, Weights)]) -> Weights {
+        std::array::from_fn(|at| terms.iter().map(|(factor, weights)| factor * weights[at]).sum())
+    }
+
+    /// Second differences, twists and distances from the coarse triangles around a coarse cell, after some levels of linear
+    /// interpolation without offsets. Each is a sum of the coarse second differences and twists. The cell has `cells`² fine cells;
+    /// one more fine cell on each side is included.
+    struct Bent {
+        cells: i32,
+        along_x: HashMap<[i32; 2], Weights>,
+        along_y: HashMap<[i32; 2], Weights>,
+        twists: HashMap<[i32; 2], Weights>,
+        distances: HashMap<[i32; 2], Weights>,
+    }
+
+    fn points(x: RangeInclusive<i32>, y: RangeInclusive<i32>) -> impl Iterator<Item = [i32; 2]> {
+        x.flat_map(move |x| y.clone().map(move |y| [x, y]))
+    }
+
+    impl Bent {
+        fn coarse() -> Self {
+            let unit = |at: usize| std::array::from_fn(|index| f64::from(u8::from(index == at)));
+            let from = |first: usize, [x, y]: [RangeInclusive<i32>; 2]| {
+                points(x, y).enumerate().map(|(at, place)| (place, unit(first + at))).collect()
+            };
+            Self {
+                cells: 1,
+                along_x: from(0, [0..=1, -1..=2]),
+                along_y: from(8, [-1..=2, 0..=1]),
+                twists: from(16, [-1..=1, -1..=1]),
+                distances: points(0..=1, 0..=1).map(|place| (place, [0.0; 25])).collect(),
+            }
+        }
+
+        /// The second difference along one axis at a point of the finer lattice. `x` runs along the axis, and `across` are the
+        /// second differences along the other axis.
+        fn along(
+            along: impl Fn(i32, i32) -> Weights,
+            across: impl Fn(i32, i32) -> Weights,
+            [x, y]: [i32; 2],
+        ) -> Weights {
+            let [i, j] = [x, y].map(|fine| fine.div_euclid(2));
+            match (x.rem_euclid(2), y.rem_euclid(2)) {
+                (0, 0) => sum(&[
+                    (0.5, along(i, j)),
+                    (1.0 / 16.0, across(i - 1, j)),
+                    (2.0 / 16.0, across(i, j)),
+                    (1.0 / 16.0, across(i + 1, j)),
+                ]),
+                (1, 0) => sum(&[(-1.0 / 8.0, across(i, j)), (-1.0 / 8.0, across(i + 1, j))]),
+                (0, _) => sum(&[(1.0 / 8.0, along(i, j)), (1.0 / 8.0, along(i, j + 1))]),
+                _ => {
+                    let four = [along(i, j), along(i + 1, j), along(i, j + 1), along(i + 1, j + 1)];
+                    sum(&four.map(|weights| (1.0 / 16.0, weights)))
+                }
+            }
+        }
+
+        fn finer(&self) -> Self {
+            let cells = 2 * self.cells;
+            let (along_x, along_y) = (|x, y| self.along_x[&[x, y]], |x, y| self.along_y[&[x, y]]);
+            let (turned_x, turned_y) = (|y, x| self.along_x[&[x, y]], |y, x| self.along_y[&[x, y]]);
+            let twist = |[x, y]: [i32; 2]| {
+                let [i, j] = [x, y].map(|fine| fine.div_euclid(2));
+                let [right, below] = [x, y].map(|fine| fine.rem_euclid(2));
+                let sign = if right == below { -1.0 / 16.0 } else { 1.0 / 16.0 };
+                sum(&[
+                    (0.25, self.twists[&[i, j]]),
+                    (sign, along_y(i, j + below)),
+                    (sign, along_y(i + 1, j + below)),
+                    (sign, along_x(i + right, j)),
+                    (sign, along_x(i + right, j + 1)),
+                ])
+            };
+            let distance = |[x, y]: [i32; 2]| {
+                let [i, j] = [x, y].map(|fine| fine.div_euclid(2));
+                let old = |x, y| (0.5, self.distances[&[x, y]]);
+                match [x, y].map(|fine| fine.rem_euclid(2)) {
+                    [0, 0] => self.distances[&[i, j]],
+                    [1, 0] => sum(&[
+                        old(i, j),
+                        old(i + 1, j),
+                        (1.0 / 16.0, along_y(i, j)),
+                        (1.0 / 16.0, along_y(i + 1, j)),
+                    ]),
+                    [0, _] => sum(&[
+                        old(i, j),
+                        old(i, j + 1),
+                        (1.0 / 16.0, along_x(i, j)),
+                        (1.0 / 16.0, along_x(i, j + 1)),
+                    ]),
+                    _ => sum(&[old(i + 1, j), old(i, j + 1), (0.25, self.twists[&[i, j]])]),
+                }
+            };
+            Self {
+                cells,
+                along_x: points(0..=cells, -1..=cells + 1)
+                    .map(|at| (at, Self::along(along_x, along_y, at)))
+                    .collect(),
+                along_y: points(-1..=cells + 1, 0..=cells)
+                    .map(|[x, y]| ([x, y], Self::along(turned_y, turned_x, [y, x])))
+                    .collect(),
+                twists: points(-1..=cells, -1..=cells).map(|at| (at, twist(at))).collect(),
+                distances: points(0..=cells, 0..=cells).map(|at| (at, distance(at))).collect(),
+            }
+        }
+
+        /// Largest value under the constraint that no coarse second difference or twist exceeds 1.
+        fn largest<'a>(weights: impl Iterator<Item = &'a Weights>) -> f64 {
+            weights.map(|weights| weights.iter().map(|weight| weight.abs()).sum()).fold(0.0, f64::max)
+        }
+    }
+
+    /// κ of linear interpolation: every distance is a sum of coarse second differences with weights that add up to at most κ.
+    #[test]
+    fn linear_interpolation_stays_near_the_triangles() {
+        let fine = (0..4).fold(Bent::coarse(), |bent, _| bent.finer());
+        let distance = Bent::largest(fine.distances.values());
+        let bent = fine.along_x.values().chain(fine.along_y.values()).chain(fine.twists.values());
+        let bent = Bent::largest(bent);
+        println!("distance {distance}, second difference {bent}, bound {}", distance / (1.0 - bent));
+        assert!(distance / (1.0 - bent) < 0.36);
     }
 }

@@ -54,6 +54,7 @@ pub struct Regions {
     pub coarser: u32,
 }
 
+#[cfg(feature = "gpu")]
 impl Windows {
     /// The same batch as regions.
     pub(crate) fn regions(&self, config: &TerrainConfig) -> Regions {

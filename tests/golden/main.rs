@@ -8,6 +8,7 @@ mod culled;
 mod curved;
 mod faults;
 mod figure;
+mod generators;
 #[allow(dead_code, reason = "only some of it is needed here")]
 #[path = "../animation/scene.rs"]
 mod gltf;

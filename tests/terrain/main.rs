@@ -10,6 +10,7 @@ mod ground;
 mod hydraulic;
 mod jobs;
 mod known_heights;
+mod noise;
 mod properties;
 mod refusals;
 use relievo_testing::shader;

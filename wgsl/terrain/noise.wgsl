@@ -68,7 +68,7 @@ fn octave_key(key: vec2<u32>, octave: u32) -> vec2<u32> {
 }
 
 // Gradient noise at a world position, on the square lattice of spacing 2^`log2`; with `has_values`, plus interpolated random
-// values of the lattice points.
+// values of the lattice points, within 1/2.
 fn square_noise(key: vec2<u32>, log2: u32, at: vec2<u32>, has_values: bool) -> i32 {
     let spacing = 1u << log2;
     let cell = at & vec2<u32>(~(spacing - 1u));
@@ -79,7 +79,7 @@ fn square_noise(key: vec2<u32>, log2: u32, at: vec2<u32>, has_values: bool) -> i
     let y = i32(fraction.y) - vec4<i32>(0, 0, 0x100000, 0x100000);
     var corners = noise_ramps(words, x, y);
     if has_values {
-        corners += vec4<i32>(words.second) >> vec4<u32>(4u);
+        corners += vec4<i32>(words.second) >> vec4<u32>(5u);
     }
     let fade = noise_fade(fraction.x);
     let above = noise_mix(corners.x, corners.y, fade);

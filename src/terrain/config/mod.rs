@@ -310,8 +310,8 @@ impl TerrainConfig {
         Ok(())
     }
 
-    /// Bound of the noise generators: octave l contributes at most r_l, the random heights of the base lattice r_0, and every
-    /// octave is rounded down by less than one unit.
+    /// Bound of the noise generators: octave l contributes at most r_l, the random heights of the base lattice r_0 / 2, and
+    /// every octave is rounded down by less than one unit. The second r_0 keeps r_0 below 2^29, which products in the noise need.
     fn check_noise(&self) -> Result<(), InputError> {
         let octaves = self.octaves(0);
         let ranges: f64 = (0..octaves).map(|octave| self.range(octave) + 1.0).sum();

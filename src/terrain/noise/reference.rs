@@ -99,7 +99,7 @@ impl Octave {
         let corner = |index: usize| {
             let one = 1 << 20;
             let offset = [u - (index as i32 & 1) * one, v - (index as i32 >> 1) * one];
-            let value = if values { self.cell.2[1][index] as i32 >> 4 } else { 0 };
+            let value = if values { self.cell.2[1][index] as i32 >> 5 } else { 0 };
             self.ramp(index, offset) + value
         };
         let [u, v] = [u, v].map(|fraction| fade(fraction as u32));

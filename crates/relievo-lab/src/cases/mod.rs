@@ -48,6 +48,7 @@ pub static OPERATIONS: &[Operation] = operations![
     terrain / height,
     terrain / smooth,
     terrain / wrap,
+    terrain / noise,
     terrain / border,
     terrain / pad,
     terrain / despike,

@@ -1,4 +1,4 @@
-//! What the cases of `kernels/terrain/height.wgsl`, `smooth.wgsl` and `wrap.wgsl` have in common.
+//! What the cases of `kernels/terrain/height.wgsl`, `smooth.wgsl`, `wrap.wgsl` and `noise.wgsl` have in common.
 //!
 //! In their benchmarks, `limit` draws and stores the same number of random words; `copy` moves 4 bytes per point.
 
@@ -7,15 +7,13 @@ use std::hint::black_box;
 use rayon::prelude::*;
 use relievo::Error;
 use relievo::gpu::{Buffer, Gpu};
-use relievo::ops::terrain::config::{Border, HeightInterpolation, Offset, TerrainConfig};
+use relievo::ops::terrain::config::{Border, HeightGenerator, Offset, TerrainConfig};
 use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::field::region;
 use relievo::ops::terrain::fixed::FeatureMode;
-use relievo::ops::terrain::height::reference::height;
-use relievo::ops::terrain::height::{HeightBuffers, HeightJob, HeightPass, HeightScratch};
-use relievo::ops::terrain::smooth::SmoothPass;
-use relievo::ops::terrain::smooth::reference::smooth;
+use relievo::ops::terrain::height::{HeightBuffers, HeightJob, HeightScratch};
+use relievo::ops::terrain::regions::{RegionJob, RegionPass};
 use relievo::ops::terrain::window::{Window, Windows};
-use relievo::ops::terrain::wrap::WrapPass;
 use relievo::ops::terrain::wrap::reference::wrap;
 
 use crate::baseline::words::WordsPass;
@@ -32,27 +30,18 @@ fn prepared(
     features: &Features,
     windows: Windows,
     output: &Buffer<i32>,
-) -> Result<HeightJob, Error> {
+) -> Result<RegionJob, Error> {
     let scratch = HeightScratch::new(gpu, config, windows)?;
-    let (offset, mode) = (config.offset, features.injection());
+    let mode = features.injection();
     // A point counts in every window that sees it.
     let capacity = features.len() * windows.count as usize;
     let buffers = HeightBuffers { output, scratch: &scratch };
-    match (config.border, config.interpolation) {
-        (Border::Seamless, HeightInterpolation::Linear) => {
-            HeightPass::new(gpu, offset, mode)?.prepare(gpu, config, windows, capacity, buffers)
-        }
-        (Border::Seamless, HeightInterpolation::Smooth) => {
-            SmoothPass::new(gpu, offset, mode)?.prepare(gpu, config, windows, capacity, buffers)
-        }
-        _ => WrapPass::new(gpu, offset, mode)?.prepare(gpu, config, windows.count, capacity, buffers),
-    }
+    RegionPass::new(gpu, config, mode)?.prepare(gpu, config, windows, capacity, buffers)
 }
 
 fn reference(config: &TerrainConfig, features: &Features, window: Window) -> Vec<i32> {
-    match (config.border, config.interpolation) {
-        (Border::Seamless, HeightInterpolation::Linear) => height(config, features, window.region(config)),
-        (Border::Seamless, HeightInterpolation::Smooth) => smooth(config, features, window.region(config)),
+    match config.border {
+        Border::Seamless => region(config, features, window.region(config)),
         _ => wrap(config, features, window.patch),
     }
 }
@@ -128,6 +117,11 @@ pub(super) fn measure_levels(
         Contender::host(Backend::ReferenceParallel, || patches.par_iter().for_each(made)),
     ];
     let size = config.patch_size;
-    let name = format!("{size}x{size} batch {count}{}", if features.is_empty() { "" } else { " valleys" });
+    let generator = match config.generator {
+        HeightGenerator::DiamondSquare => String::new(),
+        generator => format!(" {generator:?}").to_lowercase(),
+    };
+    let valleys = if features.is_empty() { "" } else { " valleys" };
+    let name = format!("{size}x{size} batch {count}{generator}{valleys}");
     bench.case(name, (points, "point"), 4 * points as u64, contenders)
 }

@@ -8,6 +8,7 @@ pub mod hydraulic;
 mod levels;
 pub mod morph;
 pub mod node;
+pub mod noise;
 pub mod normals;
 pub mod pad;
 pub mod smooth;
