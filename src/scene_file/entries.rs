@@ -6,7 +6,7 @@ use glam::{DVec3, Quat, Vec3};
 
 use super::parse_character::CharacterDetail;
 use crate::animation::Wrap;
-use crate::scene::{LevelOfDetail, Transition};
+use crate::scene::{EndlessLimits, LevelOfDetail, Transition};
 use crate::surface::ReliefShadow;
 use crate::surface::relief::ReliefMethod;
 use crate::terrain::morph::Morph;
@@ -19,6 +19,8 @@ pub(super) struct TerrainEntry {
     pub patches: Vec<[i32; 2]>,
     /// The target heights of a morph, and the progress of the morph.
     pub target: Option<(Recipe, Morph)>,
+    /// Extent of endless terrain; `None` if `patches` are the terrain.
+    pub endless: Option<EndlessLimits>,
 }
 
 /// An entry of `meshes` or `characters`: a model with its instances.

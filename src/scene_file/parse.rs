@@ -10,6 +10,7 @@ use super::parse_object::{character, mesh};
 use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
+use crate::scene::EndlessLimits;
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
@@ -34,6 +35,9 @@ const FIELD_OF_VIEW: f64 = 0.8;
 
 /// Default colour of the sky, in linear light.
 const BACKGROUND: [f32; 3] = [0.36, 0.55, 0.80];
+
+/// The largest view distance in world units.
+const MOST_VIEW: f64 = 1e9;
 
 const FIELDS: [&str; 7] = ["terrain", "meshes", "characters", "light", "camera", "quality", "background"];
 
@@ -86,10 +90,18 @@ impl SceneFile {
 
     /// Refuses instances on the ground if there is no terrain.
     fn check_grounds(&self) -> Result<(), InputError> {
-        if self.terrain.is_some() {
+        let has_patches = self.terrain.as_ref().is_some_and(|terrain| terrain.endless.is_none());
+        if has_patches {
             return Ok(());
         }
         for entry in &self.objects {
+            if entry.scatter.as_ref().is_some_and(|scatter| scatter.area.is_none()) {
+                let bound = "must be given unless terrain has patches: the corners [[x, z], [x, z]]";
+                return Err(InputError::new(format!("{}.scatter.area", entry.path), "missing", bound));
+            }
+            if self.terrain.is_some() {
+                continue;
+            }
             for (index, instance) in entry.instances.iter().enumerate() {
                 if let Spot::On { x, z, .. } = instance.spot {
                     let path = format!("{}.instances[{index}].on", entry.path);
@@ -97,18 +109,17 @@ impl SceneFile {
                     return Err(InputError::new(path, format!("[{x}, {z}]"), bound));
                 }
             }
-            if entry.scatter.as_ref().is_some_and(|scatter| scatter.area.is_none()) {
-                let bound = "must be given where there is no terrain: the corners [[x, z], [x, z]]";
-                return Err(InputError::new(format!("{}.scatter.area", entry.path), "missing", bound));
-            }
         }
         Ok(())
     }
 }
 
 fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
-    let fields = at.fields(&["config", "patches", "target", "time"])?;
+    let fields = at.fields(&["config", "patches", "target", "time", "endless", "view"])?;
     let recipe = terrain_recipe(&fields.need("config", "the configuration of `relievo terrain`")?)?;
+    if let Some(limits) = endless(&fields)? {
+        return Ok(TerrainEntry { recipe, patches: Vec::new(), target: None, endless: Some(limits) });
+    }
     let patches = match fields.get("patches") {
         Some(list) => list.list(1, MAX_PATCHES)?.iter().map(patch).collect::<Result<Vec<_>, _>>()?,
         None => vec![[0, 0]],
@@ -127,7 +138,23 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         return Err(InputError::new(format!("{path}.len"), patches.len(), bound));
     }
     let target = target(&fields, &recipe, &patches)?;
-    Ok(TerrainEntry { recipe, patches, target })
+    Ok(TerrainEntry { recipe, patches, target, endless: None })
+}
+
+/// The limits of endless terrain; `None` if it is a list of patches.
+fn endless(fields: &Fields<'_>) -> Result<Option<EndlessLimits>, InputError> {
+    let is_endless = fields.maybe("endless", |at| at.flag())?.unwrap_or(false);
+    let view_distance = fields.maybe("view", |at| at.number(1e-3, MOST_VIEW))?;
+    if !is_endless {
+        let missing = |_| Err(fields.missing("endless", "true, since a view distance is given"));
+        return view_distance.map_or(Ok(None), missing);
+    }
+    for name in ["patches", "target", "time"] {
+        if let Some(given) = fields.get(name) {
+            return Err(given.error("must not be given where terrain is endless"));
+        }
+    }
+    Ok(Some(EndlessLimits { view_distance, ..EndlessLimits::default() }))
 }
 
 fn terrain_recipe(at: &At<'_>) -> Result<Recipe, InputError> {

@@ -95,6 +95,10 @@ impl LoadedScene {
                 Some((target, morph)) => source.with_target(target.clone(), *morph),
                 None => source,
             };
+            let source = match terrain.endless {
+                Some(limits) => source.with_limits(limits),
+                None => source,
+            };
             let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;
             land = Some(object);
             let name = terrain.recipe.config.seed.clone();

@@ -8,9 +8,12 @@ use relievo::gpu::Gpu;
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Depth, LevelOfDetail, Quality, Transition, View};
-use relievo::scene_file::{SunOptions, World, WorldObject};
+use relievo::scene_file::{SunOptions, World, WorldKind, WorldObject};
 use relievo::{Error, InputError};
 use wgpu::TextureFormat;
+
+/// Largest number of frames to wait for the detail of endless terrain.
+const MOST_FRAMES_OF_DETAIL: usize = 1000;
 
 /// How frames are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -180,6 +183,18 @@ impl Player {
         }
         self.world.scene.record(&mut encoder, &mut views)?;
         self.finish(encoder)?;
+        // A picture shows endless terrain in full detail, which takes some frames where the camera has not been yet.
+        for _ in 0..MOST_FRAMES_OF_DETAIL {
+            // Velocities are those since the frame before, so no frame may come between.
+            if self.is_ready() || self.rendering.layer == Layer::Velocity {
+                break;
+            }
+            let mut encoder = self.gpu.encoder("detail");
+            let mut views: Vec<&mut View> = self.views.iter_mut().collect();
+            views.extend(self.shadow.iter_mut().map(|(shadow, _)| shadow.view()));
+            self.world.scene.record(&mut encoder, &mut views)?;
+            self.finish(encoder)?;
+        }
         let compute = milliseconds(start);
         let start = Instant::now();
         let mut encoder = self.gpu.encoder("picture");
@@ -189,6 +204,14 @@ impl Player {
         self.target.record(&mut encoder, self.world.background, |pass| self.draw(pass, &halves))?;
         self.finish(encoder)?;
         Ok(FrameTimes { compute, draw: milliseconds(start) })
+    }
+
+    /// Whether all detail of endless terrain is there that the views of the last frame need.
+    fn is_ready(&self) -> bool {
+        let terrain = self.world.objects.iter().filter(|object| object.kind == WorldKind::Terrain);
+        let ready =
+            |object: &WorldObject| self.world.scene.terrain_statistics(object.object).map(|all| all.ready);
+        terrain.filter_map(|object| ready(object).ok()).all(|ready| ready == 1.0)
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, halves: &[[u32; 2]]) -> Result<(), InputError> {
