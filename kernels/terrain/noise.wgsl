@@ -1,10 +1,7 @@
 // Heights of a batch of regions of the plane from octaves of noise. A thread computes one sample; a batch is one dispatch.
 import package::wgsl::terrain::noise::{
-    NOISE_FBM, NOISE_ONE, NOISE_RIDGED, NOISE_SIMPLEX, noise_times, octave_key, square_noise, triangle_noise,
+    GENERATOR, NOISE_ONE, NOISE_RIDGED, NOISE_SIMPLEX, noise_times, octave_key, square_noise, triangle_noise,
 };
-
-// Generator: one of the constants NOISE_*.
-override GENERATOR: u32 = 0u;
 
 // Parameters of the kernel `terrain/noise`.
 struct NoiseParams {

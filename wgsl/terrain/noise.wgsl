@@ -2,6 +2,9 @@
 // vector are the lattice points around a sample.
 import package::wgsl::hash::{Words, threefry2x32};
 
+// Generator of the pipeline: one of the constants NOISE_*.
+override GENERATOR: u32 = NOISE_FBM;
+
 // Generator: fractional Brownian motion over gradient noise.
 const NOISE_FBM = 0u;
 // Generator: ridged multifractal over gradient noise with random values.
