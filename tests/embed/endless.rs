@@ -9,7 +9,7 @@ use relievo::ops::terrain::smooth::reference::smooth;
 use relievo::ops::terrain::window::Region;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
-    Camera, EndlessLimits, ObjectId, Placement, Quality, Scene, TerrainConfig, TerrainSource, View,
+    Camera, EndlessLimits, ObjectId, Placement, Quality, Ray, Scene, TerrainConfig, TerrainSource, View,
 };
 
 use crate::harness::gpu;
@@ -76,7 +76,7 @@ impl World {
     fn positions(&mut self, camera: &Camera) -> Vec<Option<DVec3>> {
         let Self { gpu, scene, view, raw, measure, .. } = self;
         raw.frame(scene, view, measure, &[Layer::Measure]);
-        let corner = DVec3::from(Placement { cell: camera.cell, ..Placement::default() }.world());
+        let corner = Placement { cell: camera.cell, ..Placement::default() }.world();
         let place = |texel: [f32; 4]| {
             let [x, y, z, w] = texel.map(f64::from);
             (w == 1.0).then(|| corner + DVec3::new(x, y, z))
@@ -99,7 +99,7 @@ fn truth(config: &TerrainConfig, x: f64, z: f64) -> f64 {
 
 /// Where a camera draws a world position, in pixels.
 fn pixel(camera: &Camera, at: DVec3) -> DVec2 {
-    let corner = DVec3::from(Placement { cell: camera.cell, ..Placement::default() }.world());
+    let corner = Placement { cell: camera.cell, ..Placement::default() }.world();
     let clip = DMat4::from_cols_array(&camera.clip_from_view.to_cols_array().map(f64::from))
         * DMat4::from_cols_array(&camera.view_from_cell.to_cols_array().map(f64::from));
     let point = clip * (at - corner).extend(1.0);
@@ -129,13 +129,21 @@ fn some(drawn: &[Option<DVec3>], step: usize) -> Vec<Option<DVec3>> {
     drawn.iter().enumerate().map(|(at, place)| place.filter(|_| at % step == 0)).collect()
 }
 
-/// Pixels of the sky below a pixel of the ground: a ray below one that meets the ground meets it, too.
-fn holes(drawn: &[Option<DVec3>], [width, height]: [u32; 2]) -> usize {
-    let column = |x: u32| {
-        let shows = (0..height).map(|y| drawn[(y * width + x) as usize].is_some());
-        shows.skip_while(|is_ground| !is_ground).filter(|is_ground| !is_ground).count()
+/// Pixels that show the sky although the finest ground lies behind all of their corners. Only pixels below one that shows the ground
+/// are looked at.
+fn holes(world: &World, camera: &Camera, drawn: &[Option<DVec3>]) -> usize {
+    let [width, height] = world.raw.size;
+    let is_sky = |x: u32, y: u32| drawn[(y * width + x) as usize].is_none();
+    let below = |x: u32| (0..height).skip_while(move |y| is_sky(x, *y)).filter(move |y| is_sky(x, *y));
+    let suspects = (0..width).flat_map(|x| below(x).map(move |y| [x as f32, y as f32]));
+    let hits = |pixel: [f32; 2]| {
+        let ray = Ray { limit: 11_000.0, ..Ray::through(camera, pixel).expect("inside") };
+        world.scene.pick(&ray).expect("valid").is_some()
     };
-    (0..width).map(column).sum()
+    let is_hole = |[x, y]: [f32; 2]| {
+        [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].iter().all(|[dx, dy]| hits([x + dx, y + dy]))
+    };
+    suspects.filter(|pixel| is_hole(*pixel)).count()
 }
 
 /// What a flight shows.
@@ -180,10 +188,11 @@ fn flight(world: &mut World, config: &TerrainConfig, path: &Path) -> Flight {
         let aside = 0.2 * metres * (2.0 * part).sin();
         world.above([from[0] + aside, from[1] - metres * part], 2.0 * (0.5 * height).powf(part))
     };
-    let mut last: Option<(Vec<Option<DVec3>>, Vec<Option<DVec2>>)> = None;
+    // What a frame that was compared showed at the pixels.
+    let mut last: Option<Vec<Option<DVec2>>> = None;
     for frame in 0..frames {
         let camera = at(world, frame);
-        if let Some((_, before)) = last.take() {
+        if let Some(before) = last.take() {
             // The same picture with the detail of the next frame: how far the surface jumps.
             world.view.set_lod_cameras(&[camera]).expect("valid");
             let earlier = at(world, frame - 1);
@@ -203,7 +212,7 @@ fn flight(world: &mut World, config: &TerrainConfig, path: &Path) -> Flight {
         let start = std::time::Instant::now();
         let drawn = world.positions(&camera);
         flight.record_milliseconds += start.elapsed().as_secs_f64() * 1e3;
-        flight.holes += holes(&drawn, world.raw.size);
+        flight.holes += holes(world, &camera, &drawn);
         let statistics = world.scene.terrain_statistics(world.land).expect("endless");
         let is_ready = statistics.ready == 1.0;
         flight.ready_frames += usize::from(is_ready);
@@ -221,7 +230,7 @@ fn flight(world: &mut World, config: &TerrainConfig, path: &Path) -> Flight {
             flight.points += found.iter().flatten().count();
             let of = if is_ready { &mut flight.ready } else { &mut flight.rest };
             of[0] = of[0].max(largest(&found));
-            last = Some((drawn, found));
+            last = Some(found);
         }
     }
     flight
@@ -326,12 +335,12 @@ fn views_far_apart_and_a_shadow_have_their_own_detail() {
             Ok(())
         });
         frame.expect("recorded");
-        let corner = DVec3::from(Placement { cell: camera.cell, ..Placement::default() }.world());
+        let corner = Placement { cell: camera.cell, ..Placement::default() }.world();
         let place = |texel: [f32; 4]| {
             (texel[3] == 1.0).then(|| corner + DVec3::new(texel[0].into(), texel[1].into(), texel[2].into()))
         };
         let drawn: Vec<Option<DVec3>> = raw.floats(gpu, 0).into_iter().map(place).collect();
-        assert_eq!(holes(&drawn, raw.size), 0);
+        assert_eq!(holes(&world, &camera, &drawn), 0);
         let most = largest(&offsets(&config, &camera, &some(&drawn, 7)));
         assert!(most <= 1.0 + ROUNDING && most > 0.01, "{most}");
     }
@@ -355,7 +364,7 @@ fn the_ground_of_the_host_is_the_finest() {
         let turn = 7.0 * part;
         let direction = DVec3::new(turn.cos(), -0.02 - 0.4 * part, turn.sin()).normalize();
         let origin = DVec3::new(100.0, truth(&config, 100.0, 100.0) + 40.0, 100.0);
-        let ray = relievo::scene::Ray::new(origin, direction);
+        let ray = Ray::new(origin, direction);
         let Some(hit) = world.scene.pick(&ray).expect("valid") else { continue };
         hits += 1;
         let [x, y, z] = hit.world().to_array();

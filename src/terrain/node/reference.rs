@@ -54,17 +54,17 @@ fn apart(height: i32, surface: i64) -> u32 {
 /// The largest deviation of a finer sample from the triangles of the node's stitched borders, 0 for samples that are not beside one.
 fn stitched(shape: NodeShape, [x, y]: [usize; 2], height: &dyn Fn(usize, usize) -> i32) -> u32 {
     let (step, last) = (1_usize << shape.finer, (shape.size as usize - 1) << shape.finer);
-    // Each side with a function from positions along it and depths below it to heights.
-    let west = |along: usize, depth: usize| height(depth, along);
-    let east = |along: usize, depth: usize| height(last - depth, along);
-    let north = |along: usize, depth: usize| height(along, depth);
-    let south = |along: usize, depth: usize| height(along, last - depth);
-    let sides: [(&dyn Fn(usize, usize) -> i32, usize, usize); 4] =
-        [(&west, y, x), (&east, y, last - x), (&north, x, y), (&south, x, last - y)];
+    // The height `along` a side and `depth` samples inside. Sides: west, east, north, south.
+    let height_at = |side: usize, along: usize, depth: usize| match side {
+        0 => height(depth, along),
+        1 => height(last - depth, along),
+        2 => height(along, depth),
+        _ => height(along, last - depth),
+    };
+    let sides = [(y, x), (y, last - x), (x, y), (x, last - y)];
     let mut largest = 0;
-    for (side, (height, along, depth)) in
-        sides.into_iter().enumerate().filter(|(_, (.., depth))| *depth < step)
-    {
+    for (side, (along, depth)) in sides.into_iter().enumerate().filter(|(_, (_, depth))| *depth < step) {
+        let height = |along: usize, depth: usize| height_at(side, along, depth);
         let first = (along / (2 * step)).min((shape.size as usize - 3) / 2) * 2 * step;
         let [a, b] = [0, 2 * step].map(|at| i64::from(height(first + at, 0)));
         let [i, j, k] = [0, step, 2 * step].map(|at| i64::from(height(first + at, step)));

@@ -157,14 +157,14 @@ fn priorities_and_skeletons_of_a_crowd() {
     let text = std::fs::read(out.join("scene.json")).expect("written");
     let report: Value = serde_json::from_slice(&text).expect("JSON");
     assert_eq!(report["priorities"], json!({"hand_left": 1.0}));
-    let full = ["--gate", "bounded", "--pixels", "8", "--image", "--tiers", "0.5,rigid:0.1"];
+    let full = ["--gate", "bounded", "--pixels", "8", "--image", "--tiers", "0.5,rigid:0.125"];
     let ([_, tiers], out, _folder) = rows("report.json", &full);
     let ([_, whole], ..) = rows("report.json", &full[..5]);
     assert!(number(&tiers["bones"]) < number(&whole["bones"]), "{tiers} {whole}");
     assert!(off(&tiers)[0] <= 8.0, "{tiers}");
     let text = std::fs::read(out.join("report.json")).expect("written");
     let report: Value = serde_json::from_slice(&text).expect("JSON");
-    assert_eq!(report["tiers"], json!([{"bones": 0.5, "rigid": false}, {"bones": 0.1_f32, "rigid": true}]));
+    assert_eq!(report["tiers"], json!([{"bones": 0.5, "rigid": false}, {"bones": 0.125, "rigid": true}]));
 }
 
 /// A triangle that a morph target makes ten times as high in two seconds; the one bone that moves has no vertices.

@@ -151,6 +151,9 @@ struct Facts {
     error: f32,
 }
 
+/// The chunks of an object and the draws of a chunk.
+type Drawn = (Vec<Chunk>, Vec<SceneDraw>);
+
 /// Creates endless terrain.
 ///
 /// # Errors
@@ -160,7 +163,7 @@ pub(in crate::scene) fn made(
     layouts: &SceneLayouts,
     source: &TerrainSource,
     (recipe, limits): (&Recipe, EndlessLimits),
-) -> Result<(Endless, Instances, (Vec<Chunk>, Vec<SceneDraw>)), Error> {
+) -> Result<(Endless, Instances, Drawn), Error> {
     pool::check(recipe)?;
     let view_distance = limits.checked(&recipe.config)?;
     let mut instances = Instances::new(limits.capacity as usize);
@@ -394,7 +397,7 @@ impl Endless {
     /// How a view draws its nodes.
     fn table(&self, view: &SelectView, fraction: f32, cover: &Cover) -> ViewTable {
         let nobody =
-            TerrainNode { borders: [0.0; 4].into(), inner: 0.0, unused_a: 0.0, unused_b: 0.0, unused_c: 0.0 };
+            TerrainNode { borders: [0.0; 4], inner: 0.0, unused_a: 0.0, unused_b: 0.0, unused_c: 0.0 };
         let capacity = self.statistics.capacity;
         let (mut nodes, mut shown) = (vec![nobody; capacity], vec![0_u32; capacity.div_ceil(32)]);
         for Leaf { node, sides } in &cover.leaves {
@@ -406,7 +409,7 @@ impl Endless {
                 Beside::Same(other) => own.max(self.limit(*other)),
             };
             nodes[slot as usize] =
-                TerrainNode { borders: sides.each_ref().map(border).into(), inner: own, ..nobody };
+                TerrainNode { borders: sides.each_ref().map(border), inner: own, ..nobody };
             shown[slot as usize / 32] |= 1 << (slot % 32);
         }
         ViewTable { nodes, shown, cameras: view.cameras, camera_count: view.camera_count, fraction }

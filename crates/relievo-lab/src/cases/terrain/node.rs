@@ -8,7 +8,7 @@ use relievo::ops::terrain::node::reference::node;
 use relievo::ops::terrain::node::{NODE_FACTS, NodeBuffers, NodePass, NodeShape};
 
 use crate::cases::terrain::{LIMIT, check_exact, measure, random_heights};
-use crate::harness::poison::Poisoned;
+use crate::harness::poison::{POISON, Poisoned};
 use crate::harness::{Bench, Cases};
 
 /// The cases cover all resolutions, sizes around workgroup boundaries, heights up to the limit, and regions without a tile.
@@ -27,7 +27,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let slots = [2_u32, 7, 0];
             let tile = (shape.tile_width() as usize).pow(2);
             let tiles = Poisoned::new(gpu, 3 * tile)?;
-            let mut expected_tiles = tiles.buffer.read(gpu).await?;
+            let mut expected_tiles = vec![POISON as i32; 3 * tile];
             let facts = Buffer::from_slice(gpu, "facts", &[0_u32; 3 * NODE_FACTS as usize])?;
             let mut expected_facts = vec![0; facts.len()];
             for (region, slot) in heights.chunks_exact(points(shape)).zip(slots).filter(|(_, slot)| *slot < 3)
