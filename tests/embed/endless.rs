@@ -256,7 +256,7 @@ fn a_flight_has_no_holes_and_keeps_its_promise() {
 fn a_long_flight() {
     let config = TerrainConfig { coarse_levels: 8, ..config() };
     let frames = std::env::var("RELIEVO_FRAMES").map_or(600, |frames| frames.parse().expect("a number"));
-    for from in [[1.0e6, 40.0], [1.0e7, -1.0e7]] {
+    for from in [[1.0e7, -1.0e7], [1.0e6, 40.0]] {
         let limits = EndlessLimits { view_distance: Some(20_000.0), ..EndlessLimits::default() };
         let mut world = World::new(config.clone(), limits, [1280, 720]);
         let start = std::time::Instant::now();
@@ -305,6 +305,26 @@ fn a_place_looks_the_same_from_wherever_it_was_reached() {
     assert!(at_once == reached([-2_000.0, 4_000.0], 25), "from the south-west");
     assert!(at_once == reached([9_000.0, -3_000.0], 7), "from the east, faster");
     assert!(at_once != image::imageops::flip_horizontal(&at_once), "the comparison sees no difference");
+}
+
+/// A farther view takes as many nodes more each time that the distance doubles.
+#[test]
+fn nodes_grow_with_the_logarithm_of_the_distance() {
+    let drawn = |coarse_levels: u32| {
+        // Each further level is twice as high, so that the finer levels stay as they are.
+        let scale_factor = 5.0 * f64::from(1 << coarse_levels);
+        let config = TerrainConfig { coarse_levels, scale_factor, ..config() };
+        let limits = EndlessLimits { nodes_per_frame: 128, node_size: 33, ..EndlessLimits::default() };
+        let mut world = World::new(config, limits, [160, 90]);
+        let camera = world.above([10.0, 10.0], 5.0);
+        world.view.set(camera).expect("valid");
+        world.settle();
+        world.scene.terrain_statistics(world.land).expect("endless").drawn
+    };
+    let counts = [3, 4, 5, 6, 7].map(drawn);
+    println!("{counts:?}");
+    let grown: Vec<usize> = counts.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).collect();
+    assert!(grown[0] > 20 && grown.iter().all(|more| more <= &(3 * grown[0] / 2)), "{counts:?}");
 }
 
 /// Two views far apart in one frame, and the sun's view of one of them: each shows its place.

@@ -27,6 +27,7 @@ fn items() {
     use relievo::ops::mesh::simplify as _; // ops::mesh::simplify
     use relievo::ops::mesh::simplify_within as _; // ops::mesh::simplify_within
     use relievo::scene::TerrainSource as _; // TerrainSource
+    use relievo::ops::terrain::remainder as _; // ops::terrain::remainder
     use relievo::render::OutputProgram as _; // render::OutputProgram
     use relievo::scene::kind::Kind as _; // scene::kind::Kind
     use relievo::scene::kind::KindPart as _; // KindPart
@@ -106,6 +107,10 @@ fn members() {
     let _ = Scene::bounds; // Scene::bounds
     let _ = Scene::drive; // Scene::drive
     let _ = Scene::ground; // Scene::ground
+    let _ = Scene::terrain_statistics; // Scene::terrain_statistics
+    let _ = relievo::scene::TerrainSource::endless; // TerrainSource::endless
+    let _ = |limits: relievo::scene::EndlessLimits| limits.node_size; // EndlessLimits::node_size
+    let _ = |limits: relievo::scene::EndlessLimits| limits.capacity; // EndlessLimits::capacity
     let _ = Scene::pick; // Scene::pick
     let _ = Scene::pose; // Scene::pose
     let _ = Scene::rebuild_all; // Scene::rebuild_all

@@ -152,6 +152,13 @@ fn the_scene_of_a_file_in_the_browser_equals_the_native_one() {
     assert_alike("file", &native_of_file());
 }
 
+#[test]
+fn endless_terrain_in_the_browser_equals_the_native_one() {
+    let gpu = gpu();
+    let drawn = async { World::endless(&gpu).await?.draw(&gpu).await };
+    assert_alike("endless", &reduced(driven(&gpu, drawn).expect("drawn")));
+}
+
 /// The meadow, after its frames.
 async fn meadow(gpu: &Gpu) -> Result<(World, Vec<u8>), relievo::Error> {
     let mut world = World::meadow(gpu).await?;
@@ -241,7 +248,7 @@ fn kernels_equal_their_references_in_the_browser() {
     let said = said();
     assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
     let all = said["parity"].as_object().expect("an operation each");
-    assert_eq!(all.len(), 4);
+    assert_eq!(all.len(), 7);
     for (operation, result) in all {
         let lines: Vec<&str> =
             result.as_array().expect("lines").iter().filter_map(|line| line.as_str()).collect();

@@ -8,10 +8,15 @@ use glam::DVec3;
 use crate::InputError;
 use crate::scene::object_kind::UnitRay;
 use crate::scene::ray::SurfaceHit;
-use crate::terrain::field::field;
+use crate::terrain::config::TerrainConfig;
+use crate::terrain::field::region;
 use crate::terrain::ground::Ground;
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::recipe::Recipe;
+use crate::terrain::window::Region;
+
+/// Samples along an edge of a patch.
+const SIZE: u32 = 33;
 
 /// Largest number of patches that are kept.
 const KEPT: usize = 1024;
@@ -20,6 +25,8 @@ const KEPT: usize = 1024;
 #[derive(Debug)]
 pub(super) struct FinestGround {
     recipe: Recipe,
+    /// The terrain in patches of [`SIZE`] samples.
+    patch: TerrainConfig,
     edge: f64,
     patches: Mutex<Patches>,
 }
@@ -33,8 +40,10 @@ struct Patches {
 
 impl FinestGround {
     pub fn new(recipe: &Recipe) -> Result<Self, InputError> {
-        let patches = Patches { ground: Ground::new(&recipe.config)?, order: VecDeque::new() };
-        Ok(Self { recipe: recipe.clone(), edge: recipe.config.edge_length(), patches: Mutex::new(patches) })
+        let patch = TerrainConfig { patch_size: SIZE, ..recipe.config.clone() };
+        let patches = Patches { ground: Ground::new(&patch)?, order: VecDeque::new() };
+        let edge = patch.edge_length();
+        Ok(Self { recipe: recipe.clone(), patch, edge, patches: Mutex::new(patches) })
     }
 
     /// The ground at a world position; `None` beyond the world.
@@ -97,10 +106,13 @@ impl FinestGround {
     fn with(&self, patch: [i32; 2]) -> Result<Option<MutexGuard<'_, Patches>>, InputError> {
         let mut patches = self.patches.lock().unwrap_or_else(PoisonError::into_inner);
         if !patches.order.contains(&patch) {
-            if self.recipe.validate(&[patch], 0).is_err() {
+            let first = patch.map(|index| i64::from(index) * (i64::from(SIZE) - 1));
+            let samples = Region { first, width: self.patch.patch_size, coarser: 0 };
+            let config = &self.recipe.config;
+            if samples.validate(config).is_err() {
                 return Ok(None);
             }
-            let heights = field(&self.recipe, &[patch], 0)?.swap_remove(0);
+            let heights = region(config, &self.recipe.features, samples);
             patches.ground.insert(patch, &heights, 0)?;
             patches.order.push_back(patch);
             if patches.order.len() > KEPT

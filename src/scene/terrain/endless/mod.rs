@@ -44,7 +44,7 @@ use crate::terrain::window::Region;
 use crate::{Error, InputError};
 use ground::FinestGround;
 use in_view::{EndlessInView, ViewTable};
-use pool::{BATCH, NewNode, Pool, finer};
+use pool::{BATCH, Grid, NewNode, Pool};
 
 /// Number of parts along an edge of a node in which the displacement that a view allows is found. A smaller part allows more.
 const PARTS: u32 = 4;
@@ -61,18 +61,20 @@ const MOST_BIAS: f32 = 1024.0;
 /// Extent and memory of endless terrain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndlessLimits {
-    /// Distance in world units up to which terrain is drawn around each camera, at most one and a half edges of the coarsest nodes
+    /// Distance in world units up to which terrain is drawn around each camera, at most one and a half spacings of the base lattice:
     /// (`patch_size` − 1) · 2^`coarse_levels` · `terrain_scale`. `None`: as far as that.
     pub view_distance: Option<f64>,
     /// Largest number of nodes to make in a frame, 16 to 1024. Default: 32.
     pub nodes_per_frame: u32,
-    /// Number of nodes for which there is memory, 256 to 65536. Default: 2048. A node takes 4 · (`patch_size` + 4)² bytes.
+    /// Number of nodes for which there is memory, 256 to 65536. Default: 2048. A node takes 4 · (`node_size` + 4)² bytes.
     pub capacity: u32,
+    /// Samples along an edge of a node: 2^n + 1, n in 3..=8, at most those between two points of the base lattice. Default: 65.
+    pub node_size: u32,
 }
 
 impl Default for EndlessLimits {
     fn default() -> Self {
-        Self { view_distance: None, nodes_per_frame: 32, capacity: 2048 }
+        Self { view_distance: None, nodes_per_frame: 32, capacity: 2048, node_size: 65 }
     }
 }
 
@@ -83,7 +85,7 @@ impl EndlessLimits {
         let distance = self.view_distance.unwrap_or(most);
         if !(distance > 0.0 && distance <= most) {
             let bound = format!(
-                "must be above 0 and at most {most}, one and a half edges of the coarsest nodes; raise coarse_levels for more"
+                "must be above 0 and at most {most}, one and a half spacings of the base lattice; raise coarse_levels for more"
             );
             return Err(InputError::new("view_distance", distance, bound));
         }
@@ -108,6 +110,8 @@ pub struct EndlessStatistics {
     pub ready: f32,
     /// Number of nodes that were not made because the memory holds nodes in use only.
     pub refused: usize,
+    /// Number of nodes of each level that the views drew, without culling; the finest level is 0.
+    pub levels: [u32; 18],
 }
 
 /// An endless terrain in a scene.
@@ -116,6 +120,7 @@ pub(in crate::scene) struct Endless {
     source: TerrainSource,
     recipe: Recipe,
     limits: EndlessLimits,
+    grid: Grid,
     view_distance: f64,
     pool: Pool,
     residents: BTreeMap<Node, Resident>,
@@ -164,12 +169,14 @@ pub(in crate::scene) fn made(
     source: &TerrainSource,
     (recipe, limits): (&Recipe, EndlessLimits),
 ) -> Result<(Endless, Instances, Drawn), Error> {
-    pool::check(recipe)?;
+    recipe.validate(&[], 0)?;
+    let grid = Grid::new(&recipe.config, limits.node_size)?;
+    pool::check(recipe, grid)?;
     let view_distance = limits.checked(&recipe.config)?;
     let mut instances = Instances::new(limits.capacity as usize);
     let capacity = instances.capacity();
-    let pool = Pool::new(gpu, recipe, capacity)?;
-    let (chunks, draws) = drawn(gpu, layouts, source, &pool, capacity)?;
+    let pool = Pool::new(gpu, recipe, grid, capacity)?;
+    let (chunks, draws) = drawn(gpu, layouts, source, (&pool, grid, capacity))?;
     let hidden = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
     for _ in 0..capacity {
         instances.spawn(&Placement::default(), &hidden);
@@ -178,6 +185,7 @@ pub(in crate::scene) fn made(
         source: source.clone(),
         recipe: recipe.clone(),
         limits,
+        grid,
         view_distance,
         pool,
         residents: BTreeMap::new(),
@@ -197,8 +205,7 @@ fn drawn(
     gpu: &Gpu,
     layouts: &SceneLayouts,
     source: &TerrainSource,
-    pool: &Pool,
-    capacity: usize,
+    (pool, grid, capacity): (&Pool, Grid, usize),
 ) -> Result<(Vec<Chunk>, Vec<SceneDraw>), Error> {
     let config = source.config();
     let textures = match &source.textures {
@@ -206,10 +213,10 @@ fn drawn(
         None => TerrainTexture::of_zones(&config.zones)?,
     };
     let zones = Materials::new(gpu, &config.zones, &textures)?;
-    let indices = patch_indices(config.patch_size);
+    let indices = patch_indices(grid.cells + 1);
     let params = TerrainParams {
-        in_width: pool::tile_width(config),
-        size: config.patch_size,
+        in_width: grid.shape(0).tile_width(),
+        size: grid.cells + 1,
         spacing: config.terrain_scale as f32,
         run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
         tiling: (config.tiles_per_patch() / f64::from(config.patch_size - 1)) as f32,
@@ -253,14 +260,14 @@ impl Endless {
 
     /// Length of an edge of a node in world units.
     fn edge(&self, level: u32) -> f64 {
-        self.config().edge_length() * f64::from(1_u32 << level)
+        f64::from(self.grid.cells) * self.config().terrain_scale * f64::from(1_u32 << level)
     }
 
     /// The lowest and the highest corner of a node's box in world units. A node whose facts are unknown has those of the node that
     /// covers it, or the bound of all heights.
     fn node_box(&self, node: Node) -> [DVec3; 2] {
-        let known = (node.level..=self.config().coarse_levels)
-            .find_map(|level| self.residents.get(&node.ancestor(level))?.facts);
+        let known =
+            (node.level..=self.grid.top).find_map(|level| self.residents.get(&node.ancestor(level))?.facts);
         let most = self.config().most_height();
         let [low, high] = known.map_or([-most, most], |facts| facts.heights);
         let edge = self.edge(node.level);
@@ -280,7 +287,7 @@ impl Endless {
 
     /// The coarsest nodes within the view distance of the eyes of views.
     fn roots(&self, views: &[SelectView]) -> BTreeSet<Node> {
-        let (level, mut roots) = (self.config().coarse_levels, BTreeSet::new());
+        let (level, mut roots) = (self.grid.top, BTreeSet::new());
         let edge = self.edge(level);
         let eyes = views.iter().flat_map(|view| {
             let corner = Placement::corner(view.cell.into());
@@ -294,7 +301,8 @@ impl Endless {
             for (x, z) in range(eye.z).flat_map(|z| range(eye.x).map(move |x| (x, z))) {
                 let root = Node { level, at: [x, z] };
                 // Only roots whose samples have world coordinates exist.
-                let region = Region { first: pool::first_of(self.config(), root), width: 1, coarser: 0 };
+                let region =
+                    Region { first: self.grid.first_of(root), width: 1, coarser: self.grid.coarser(level) };
                 if region.validate(self.config()).is_ok() {
                     roots.insert(root);
                 }
@@ -330,7 +338,7 @@ impl Endless {
         for (node, resident) in &mut self.residents {
             if resident.facts.is_none() && resident.made <= frame {
                 let found = facts.get(resident.slot as usize).copied().flatten();
-                resident.facts = found.map(|found| facts_of(&self.recipe.config, *node, &found));
+                resident.facts = found.map(|found| facts_of(&self.recipe.config, self.grid, *node, &found));
                 known.extend(resident.facts.map(|_| *node));
             }
         }
@@ -343,7 +351,7 @@ impl Endless {
             // Siblings leave together: without one of them, the others cannot be drawn.
             let unused = self.residents.iter().filter(|(_, resident)| resident.used < self.frame);
             let (oldest, _) = unused.min_by_key(|(node, resident)| (resident.used, **node))?;
-            let family = match oldest.level == self.config().coarse_levels {
+            let family = match oldest.level == self.grid.top {
                 true => vec![*oldest],
                 false => oldest.parent().children().to_vec(),
             };
@@ -387,7 +395,7 @@ impl Endless {
     /// nearly as far off.
     fn limit(&self, node: Node) -> f32 {
         let error = |node: Node| self.residents.get(&node).and_then(|resident| resident.facts);
-        if node.level == self.config().coarse_levels {
+        if node.level == self.grid.top {
             return f32::MAX;
         }
         let coarser = error(node.parent()).map_or(f32::MAX, |facts| facts.error);
@@ -432,7 +440,7 @@ impl Endless {
             }
         }
         let (mut missing, mut soon, mut tables) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut wanted, mut split, mut drawn, mut unknown) = (0, 0, 0, 0);
+        let (mut wanted, mut split, mut drawn, mut unknown, mut levels) = (0, 0, 0, 0, [0; 18]);
         for view in views {
             let is_wanted = |node: Node| self.is_beyond(view, fraction, node);
             let cover = Cover::new(&roots, is_wanted, |node| self.residents.contains_key(&node));
@@ -455,6 +463,9 @@ impl Endless {
                 leaf.node.level > 0 && facts.is_none()
             };
             unknown += cover.leaves.iter().filter(is_unknown).count();
+            for leaf in &cover.leaves {
+                levels[leaf.node.level as usize] += 1;
+            }
             tables.push(self.table(view, fraction, &cover));
             missing.extend(cover.missing);
             soon.extend(near);
@@ -478,6 +489,7 @@ impl Endless {
             nodes: self.residents.len(),
             made: self.new.len(),
             drawn,
+            levels,
             ready: if open == 0 { 1.0 } else { (split as f32 / (split + open) as f32).min(0.999) },
             ..self.statistics
         };
@@ -524,10 +536,10 @@ fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
 }
 
 /// The facts of a node, from what the device found.
-fn facts_of(config: &TerrainConfig, node: Node, found: &NodeFacts) -> Facts {
+fn facts_of(config: &TerrainConfig, grid: Grid, node: Node, found: &NodeFacts) -> Facts {
     let second = 2 * i64::from(found.second_difference);
     let deviation = i64::from(found.deviation.max(if node.level > 0 { found.stitched } else { 0 }));
-    let below = remainder(config, node.level - finer(config, node.level), second);
+    let below = remainder(config, grid.coarser(node.level), second);
     let world = |height: i64| height as f64 / HEIGHT_ONE;
     let heights = [i64::from(found.lowest) - below, i64::from(found.highest) + below].map(world);
     Facts { heights, error: (world(deviation + below) as f32).next_up() }
@@ -552,8 +564,9 @@ impl ObjectKind for Endless {
     fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a> {
         let MakeOn { gpu, layouts, .. } = target;
         Box::pin(async move {
-            let pool = Pool::new(gpu, &self.recipe, self.statistics.capacity)?;
-            let (chunks, _) = drawn(gpu, layouts, &self.source, &pool, self.statistics.capacity)?;
+            let capacity = self.statistics.capacity;
+            let pool = Pool::new(gpu, &self.recipe, self.grid, capacity)?;
+            let (chunks, _) = drawn(gpu, layouts, &self.source, (&pool, self.grid, capacity))?;
             Ok(OnDevice { chunks, other: Box::new(pool) })
         })
     }
@@ -607,7 +620,7 @@ impl ObjectKind for Endless {
     /// The first hit of a ray on the finest ground. The coarsest nodes answer for all others.
     fn hit(&self, instance: &Placed, ray: &UnitRay) -> Result<Option<SurfaceHit>, InputError> {
         let own = self.residents.iter().find(|(_, resident)| resident.slot == instance.index);
-        let Some((node, _)) = own.filter(|(node, _)| node.level == self.config().coarse_levels) else {
+        let Some((node, _)) = own.filter(|(node, _)| node.level == self.grid.top) else {
             return Ok(None);
         };
         self.ground.hit(self.node_box(*node), Placement::corner(instance.cell) + ray.origin, ray)

@@ -37,6 +37,7 @@ pub(super) struct Pool {
     pub patches: Buffer<TerrainPatch>,
     facts: Buffer<u32>,
     ring: ReadbackRing<u64>,
+    grid: Grid,
     generator: RegionPass,
     pass: NodePass,
     heights: Buffer<i32>,
@@ -45,7 +46,6 @@ pub(super) struct Pool {
     jobs: Vec<Vec<BatchJob>>,
     /// Index of the job of each batch of the frame: its level and its number.
     batches: Vec<[usize; 2]>,
-    staged: usize,
 }
 
 /// The jobs that make up to [`BATCH`] nodes of one level.
@@ -63,15 +63,56 @@ pub(super) struct NewNode {
     pub slot: u32,
 }
 
-/// Number of levels by which the heights from which a node of a level is made are finer.
-pub(super) fn finer(config: &TerrainConfig, level: u32) -> u32 {
-    let cells = config.patch_size - 1;
-    (MOST_CELLS / cells).max(1).ilog2().min(MOST_FINER).min(level)
+/// The nodes into which a terrain is divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Grid {
+    /// Number of cells along an edge of a node, a power of two.
+    pub cells: u32,
+    /// Level of the coarsest nodes: they cover one cell of the base lattice.
+    pub top: u32,
 }
 
-/// Width of a tile in samples.
-pub(super) fn tile_width(config: &TerrainConfig) -> u32 {
-    NodeShape { size: config.patch_size, finer: 0 }.tile_width()
+impl Grid {
+    /// The nodes of `node_size` samples of a configuration.
+    ///
+    /// # Errors
+    /// [`InputError`] for a size that is not 2^n + 1, out of bounds, or larger than a cell of the base lattice.
+    pub fn new(config: &TerrainConfig, node_size: u32) -> Result<Self, InputError> {
+        let cells = node_size.saturating_sub(1);
+        let is_size = cells.is_power_of_two() && (8..=256).contains(&cells);
+        InputError::check(
+            is_size,
+            "node_size",
+            node_size,
+            || "must be 2^n + 1 with n in 3..=8 (9, 17, … 257)",
+        )?;
+        let most = config.levels();
+        let bound = || {
+            format!(
+                "must be at most {}, the samples between two points of the base lattice",
+                (1_u64 << most) + 1
+            )
+        };
+        InputError::check(cells.ilog2() <= most, "node_size", node_size, bound)?;
+        Ok(Self { cells, top: most - cells.ilog2() })
+    }
+
+    /// The shape of the nodes of a level. The heights from which they are made are up to [`MOST_FINER`] levels finer.
+    pub fn shape(self, level: u32) -> NodeShape {
+        let finer = (MOST_CELLS / self.cells).max(1).ilog2().min(MOST_FINER).min(level);
+        NodeShape { size: self.cells + 1, finer }
+    }
+
+    /// The first sample of the region of finer heights of a node.
+    pub fn first_of(self, node: Node) -> [i64; 2] {
+        let (cells, finer) = (i64::from(self.cells), self.shape(node.level).finer);
+        node.at.map(|at| (i64::from(at) * cells - i64::from(NODE_MARGIN)) << finer)
+    }
+
+    /// Number of levels by which the finer heights of a node of a level are coarser than the terrain.
+    pub fn coarser(self, level: u32) -> u32 {
+        level - self.shape(level).finer
+    }
 }
 
 impl Pool {
@@ -79,16 +120,18 @@ impl Pool {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub fn new(gpu: &Gpu, recipe: &Recipe, capacity: usize) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, recipe: &Recipe, grid: Grid, capacity: usize) -> Result<Self, Error> {
         let config = &recipe.config;
-        let shapes = (0..=config.coarse_levels)
-            .map(|level| NodeShape { size: config.patch_size, finer: finer(config, level) });
-        let width = shapes.map(NodeShape::region_width).max().unwrap_or(0);
+        let width = (0..=grid.top).map(|level| grid.shape(level).region_width()).max().unwrap_or(0);
         // The largest scratch is that of the widest regions with the most subdivisions.
         let regions = Regions { count: BATCH as u32, width, coarser: 0 };
         let words = capacity * NODE_FACTS as usize;
         Ok(Self {
-            tiles: Buffer::new(gpu, "terrain nodes", capacity * (tile_width(config) as usize).pow(2))?,
+            tiles: Buffer::new(
+                gpu,
+                "terrain nodes",
+                capacity * (grid.shape(0).tile_width() as usize).pow(2),
+            )?,
             patches: Buffer::new(gpu, "patches", capacity)?,
             facts: Buffer::new(gpu, "facts of nodes", words)?,
             ring: ReadbackRing::new(gpu, "facts of nodes", FRAMES_IN_FLIGHT, 4 * words as u64)?,
@@ -96,9 +139,9 @@ impl Pool {
             pass: NodePass::new(gpu)?,
             heights: Buffer::new(gpu, "finer heights", BATCH * (width as usize).pow(2))?,
             scratch: HeightScratch::for_regions(gpu, config, regions)?,
-            jobs: (0..=config.coarse_levels).map(|_| Vec::new()).collect(),
+            grid,
+            jobs: (0..=grid.top).map(|_| Vec::new()).collect(),
             batches: Vec::new(),
-            staged: 0,
         })
     }
 
@@ -137,8 +180,8 @@ impl Pool {
     }
 
     fn job(&self, gpu: &Gpu, config: &TerrainConfig, level: u32) -> Result<BatchJob, Error> {
-        let shape = NodeShape { size: config.patch_size, finer: finer(config, level) };
-        let (width, coarser) = (shape.region_width(), level - shape.finer);
+        let shape = self.grid.shape(level);
+        let (width, coarser) = (shape.region_width(), self.grid.coarser(level));
         let regions = Regions { count: BATCH as u32, width, coarser };
         let output = HeightBuffers { output: &self.heights, scratch: &self.scratch };
         let slots = Buffer::new(gpu, "slots of nodes", BATCH)?;
@@ -161,12 +204,12 @@ impl Pool {
                 let mut slots = [NO_SLOT; BATCH];
                 slots.iter_mut().zip(batch).for_each(|(slot, new)| *slot = new.slot);
                 staged.elements(&job.slots, 0, &slots)?;
-                let firsts: Vec<[i64; 2]> = batch.iter().map(|new| first_of(config, new.node)).collect();
+                let firsts: Vec<[i64; 2]> = batch.iter().map(|new| self.grid.first_of(new.node)).collect();
                 job.heights.stage_regions(staged, &firsts, &Features::default())?;
             }
         }
         for new in new {
-            staged.elements(&self.patches, new.slot as usize, &[patch_of(config, *new)])?;
+            staged.elements(&self.patches, new.slot as usize, &[patch_of(config, self.grid, *new)])?;
             let none = [0; NODE_FACTS as usize];
             staged.elements(&self.facts, new.slot as usize * NODE_FACTS as usize, &none)?;
         }
@@ -179,7 +222,6 @@ impl Pool {
             let job = &self.jobs[level][number];
             job.heights.record(encoder);
             job.nodes.record(encoder);
-            self.staged += 1;
         }
         if reads_facts {
             let facts = &self.facts;
@@ -190,16 +232,10 @@ impl Pool {
     }
 }
 
-/// The first sample of the region of finer heights of a node.
-pub(super) fn first_of(config: &TerrainConfig, node: Node) -> [i64; 2] {
-    let (cells, finer) = (i64::from(config.patch_size) - 1, finer(config, node.level));
-    node.at.map(|at| (i64::from(at) * cells - i64::from(NODE_MARGIN)) << finer)
-}
-
 /// A node in the format of the shader that draws it.
-fn patch_of(config: &TerrainConfig, NewNode { node, slot }: NewNode) -> TerrainPatch {
-    let edge = (config.patch_size as i32 - 1) << node.level;
-    let tiles = config.tiles_per_patch() * f64::from(1 << node.level);
+fn patch_of(config: &TerrainConfig, grid: Grid, NewNode { node, slot }: NewNode) -> TerrainPatch {
+    let edge = (grid.cells as i32) << node.level;
+    let tiles = config.tiles_per_patch() / f64::from(config.patch_size - 1) * f64::from(edge);
     TerrainPatch {
         origin: node.at.map(|at| at.wrapping_mul(edge)),
         uv: node.at.map(|at| (f64::from(at) * tiles).rem_euclid(f64::from(TILES_PERIOD)) as f32),
@@ -212,8 +248,7 @@ fn patch_of(config: &TerrainConfig, NewNode { node, slot }: NewNode) -> TerrainP
 ///
 /// # Errors
 /// [`InputError`] for a recipe out of bounds, without `seamless` borders, or with what nodes are not made with.
-pub(super) fn check(recipe: &Recipe) -> Result<(), InputError> {
-    recipe.validate(&[], 0)?;
+pub(super) fn check(recipe: &Recipe, grid: Grid) -> Result<(), InputError> {
     let refused = |field: &str, bound: &str| Err(InputError::new(field, "given", bound));
     if recipe.config.border != crate::terrain::config::Border::Seamless {
         return refused(
@@ -221,10 +256,10 @@ pub(super) fn check(recipe: &Recipe) -> Result<(), InputError> {
             "must be \"seamless\" where terrain is endless: patches alone make no plane",
         );
     }
-    let (reach, level) = (remainder_reach(&recipe.config), recipe.config.coarse_levels);
-    if level > finer(&recipe.config, level) && reach >= NODE_MARGIN << finer(&recipe.config, level) {
-        let bound = "must be at most 129 where terrain is endless and interpolation is smooth";
-        return Err(InputError::new("patch_size", recipe.config.patch_size, bound));
+    let finer = grid.shape(grid.top).finer;
+    if grid.top > finer && remainder_reach(&recipe.config) >= NODE_MARGIN << finer {
+        let bound = "must be at most 129 where interpolation is smooth";
+        return Err(InputError::new("node_size", grid.cells + 1, bound));
     }
     if !recipe.features.is_empty() {
         return refused("features", "must not be given where terrain is endless");

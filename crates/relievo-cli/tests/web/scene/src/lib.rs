@@ -41,6 +41,16 @@ pub async fn draw_file() -> Result<Vec<u8>, JsValue> {
     drawn.await.map_err(|error| JsValue::from_str(&error.to_string()))
 }
 
+/// Draws terrain without end on a device of its own; pixels as above.
+#[wasm_bindgen]
+pub async fn draw_endless() -> Result<Vec<u8>, JsValue> {
+    let drawn = async {
+        let gpu = Gpu::headless_async(&Options::default()).await?;
+        drawn(&gpu, World::endless(&gpu).await?).await
+    };
+    drawn.await.map_err(|error| JsValue::from_str(&error.to_string()))
+}
+
 /// Draws grass, a kind of object that the library does not know, on a device of its own; pixels as above.
 #[wasm_bindgen]
 pub async fn draw_kind() -> Result<Vec<u8>, JsValue> {

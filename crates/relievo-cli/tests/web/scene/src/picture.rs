@@ -13,7 +13,9 @@ use relievo::gpu::Gpu;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::TerrainConfig;
 use relievo::scene::kind::KindProgram;
-use relievo::scene::{Camera, Depth, Placement, Play, Ray, Relief, Scene, TerrainSource, View};
+use relievo::scene::{
+    Camera, Depth, EndlessLimits, ObjectId, Placement, Play, Quality, Ray, Relief, Scene, TerrainSource, View,
+};
 use relievo::scene_file::SceneFile;
 use relievo::wgpu::TextureFormat;
 use relievo_samples::{creature, maps::BuiltInMap};
@@ -26,6 +28,9 @@ const SKY: [f32; 3] = [0.36, 0.55, 0.8];
 /// The frames before the picture: more than recordings may wait for their submission.
 const FRAMES: usize = 6;
 
+/// The most frames to wait for the detail of endless terrain.
+const MOST_FRAMES: usize = 300;
+
 /// The scene with what draws it.
 pub struct World {
     scene: Scene,
@@ -33,6 +38,8 @@ pub struct World {
     shadow: Option<SunShadow>,
     eye: View,
     target: Offscreen,
+    /// Endless terrain, whose detail takes some frames.
+    land: Option<ObjectId>,
 }
 
 impl World {
@@ -86,6 +93,22 @@ impl World {
         Ok(Self { shadow: Some(shadow), ..Self::seen(gpu, scene, camera).await? })
     }
 
+    /// Builds terrain without end, on WebGPU's default limits, far from the origin.
+    pub async fn endless(gpu: &Gpu) -> Result<Self, Error> {
+        let mut scene = Scene::new_async(gpu).await?;
+        let config = TerrainConfig { coarse_levels: 5, ..TerrainConfig::new(65, 200.0, "browser")? };
+        let limits = EndlessLimits { capacity: 512, ..EndlessLimits::default() };
+        let land = scene.add_terrain_async(&TerrainSource::endless(config).with_limits(limits)).await?;
+        let at = [1.0e6, -2.0e6];
+        let height = scene.ground(land, at[0], at[1])?.map_or(0.0, |point| point.height);
+        let eye = [at[0], height + 40.0, at[1]];
+        let target = [at[0] + 300.0, height - 20.0, at[1] - 900.0];
+        let camera = Camera::looking_at_world(eye, target, 0.8, [1.0, 10_000.0], SIZE);
+        let mut world = Self::seen(gpu, scene, camera).await?;
+        world.eye.set_quality(Quality::pixels(2.0))?;
+        Ok(Self { land: Some(land), ..world })
+    }
+
     /// Builds the scene of a file, which names no other files.
     pub async fn of_file(gpu: &Gpu) -> Result<Self, Error> {
         let none = |_: &Path| Err(std::io::ErrorKind::NotFound.into());
@@ -101,13 +124,13 @@ impl World {
         renderer.prepare_async(&scene).await?;
         let mut eye = scene.view(Default::default())?;
         eye.set(camera)?;
-        Ok(Self { scene, renderer, shadow: None, eye, target })
+        Ok(Self { scene, renderer, shadow: None, eye, target, land: None })
     }
 
     /// Plays some frames, and reads the last one: RGBA in sRGB, row by row.
     pub async fn draw(&mut self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
-        let Self { scene, renderer, shadow, eye, target } = self;
-        for _ in 0..FRAMES {
+        let Self { scene, renderer, shadow, eye, target, land } = self;
+        for frame in 1.. {
             scene.advance(0.1)?;
             let mut encoder = gpu.encoder("frame");
             match shadow {
@@ -123,6 +146,10 @@ impl World {
             // As a page waits for its next frame.
             gpu.wait_async().await?;
             scene.health()?;
+            let ready = land.map_or(Ok(1.0), |land| scene.terrain_statistics(land).map(|all| all.ready))?;
+            if frame >= FRAMES && (ready == 1.0 || frame == MOST_FRAMES) {
+                break;
+            }
         }
         Ok(target.read_async(gpu).await?.into_raw())
     }
