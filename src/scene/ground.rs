@@ -203,13 +203,18 @@ impl Object {
 }
 
 fn terrain_of(kind: &dyn ObjectKind) -> Result<&Terrain, InputError> {
-    kind.downcast().ok_or_else(no_terrain)
+    kind.downcast().ok_or_else(|| no_patches(kind))
 }
 
 fn terrain_of_mut(kind: &mut dyn ObjectKind) -> Result<&mut Terrain, InputError> {
-    kind.downcast_mut().ok_or_else(no_terrain)
+    let refused = no_patches(kind);
+    kind.downcast_mut().ok_or(refused)
 }
 
-fn no_terrain() -> InputError {
-    InputError::new("terrain", "a mesh or a character", "must be terrain")
+/// Why an object is not terrain of patches.
+fn no_patches(kind: &dyn ObjectKind) -> InputError {
+    match kind.downcast::<Endless>() {
+        Some(_) => InputError::new("terrain", "endless", "must be terrain of a list of patches"),
+        None => InputError::new("terrain", "a mesh or a character", "must be terrain"),
+    }
 }

@@ -66,6 +66,11 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         true
     }
 
+    /// Whether the last frame had all detail that its views asked for.
+    fn is_complete(&self) -> bool {
+        true
+    }
+
     /// Whether an instance needs all bones of its skeleton, so that it cannot have a reduced one.
     fn needs_skeleton(&self, index: u32) -> bool {
         let _ = index;

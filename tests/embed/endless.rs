@@ -327,6 +327,40 @@ fn nodes_grow_with_the_logarithm_of_the_distance() {
     assert!(grown[0] > 20 && grown.iter().all(|more| more <= &(3 * grown[0] / 2)), "{counts:?}");
 }
 
+/// A lost device and a dropped encoder leave no trace: the picture is the same as before.
+#[test]
+fn nodes_are_made_again_after_a_loss() {
+    let mut world = World::new(config(), EndlessLimits::default(), [160, 90]);
+    let camera = world.above([40.0, -700.0], 12.0);
+    world.view.set(camera).expect("valid");
+    world.scene.set_statistics(true).expect("counted");
+    world.frame();
+    world.frame();
+    let pixels = |world: &mut World| world.view.statistics().expect("counted").pixels;
+    assert_eq!(pixels(&mut world), f32::INFINITY, "no bound while detail is missing");
+    world.settle();
+    let before = picture(&mut world);
+    assert_eq!(pixels(&mut world), 1.0);
+    let made = |world: &World| world.scene.terrain_statistics(world.land).expect("endless").nodes;
+    let nodes = made(&world);
+    // A frame somewhere else is recorded and never submitted.
+    let elsewhere = world.above([9_000.0, 9_000.0], 12.0);
+    world.view.set(elsewhere).expect("valid");
+    let mut encoder = world.gpu.encoder("dropped");
+    world.scene.record(&mut encoder, &mut [&mut world.view]).expect("recorded");
+    drop(encoder);
+    world.view.set(camera).expect("valid");
+    world.settle();
+    assert!(picture(&mut world) == before, "after a dropped encoder");
+    let second = crate::frame::device();
+    world.gpu.device().destroy();
+    world.scene.rebuild_all(&second, &mut [&mut world.view]).expect("rebuilt");
+    world.gpu = second;
+    world.settle();
+    assert_eq!(made(&world), nodes);
+    assert!(picture(&mut world) == before, "after a lost device");
+}
+
 /// Two views far apart in one frame, and the sun's view of one of them: each shows its place.
 #[test]
 fn views_far_apart_and_a_shadow_have_their_own_detail() {
@@ -413,9 +447,23 @@ fn limits_and_sources_out_of_bounds_are_refused() {
     assert_eq!(refused(endless(EndlessLimits { view_distance: Some(f64::NAN), ..usual })), "view_distance");
     assert_eq!(refused(endless(EndlessLimits { nodes_per_frame: 15, ..usual })), "nodes_per_frame");
     assert_eq!(refused(endless(EndlessLimits { capacity: 255, ..usual })), "capacity");
+    assert_eq!(refused(endless(EndlessLimits { node_size: 64, ..usual })), "node_size");
+    assert_eq!(refused(endless(EndlessLimits { node_size: 513, ..usual })), "node_size");
+    let small = TerrainConfig { coarse_levels: 0, ..TerrainConfig::new(17, 10.0, "small").expect("valid") };
+    assert_eq!(refused(TerrainSource::endless(small)), "node_size");
     let wrapped = TerrainConfig::new(65, 10.0, "wrap")
         .map(|config| TerrainConfig { border: relievo::scene::TerrainBorder::Wrap, ..config });
     assert_eq!(refused(TerrainSource::endless(wrapped.expect("valid"))), "border");
+    let mut eroded = relievo::scene::TerrainRecipe::new(config());
+    eroded.despike = Some(relievo::scene::Despike { threshold: 1.0 });
+    assert_eq!(refused(TerrainSource::from(eroded).with_limits(usual)), "recipe");
+    // What is only for lists of patches, and only for endless terrain.
+    let land = scene.add_terrain(&TerrainSource::endless(config())).expect("added");
+    let patches = scene.set_patches(land, &[[0, 0]], [0.0, 1.0]).expect_err("refused").to_string();
+    assert!(patches.contains("terrain = endless"), "{patches}");
+    let plain = scene.add_terrain(&TerrainSource::new(TerrainConfig::new(17, 1.0, "").expect("valid")));
+    let plain = scene.terrain_statistics(plain.expect("added")).expect_err("refused").to_string();
+    assert!(plain.contains("TerrainSource::endless"), "{plain}");
 }
 
 #[test]

@@ -54,8 +54,10 @@ impl ViewCounts {
         objects: &Slots<Object>,
     ) {
         self.arrive();
-        let is_coarser = objects.iter().any(|object| object.lod_bias != 1.0);
-        let lod_bias = objects.iter().filter(|_| is_coarser).map(|object| object.lod_bias).collect();
+        // What is drawn coarser than the view asks for has no bound.
+        let bias = |object: &Object| if object.kind.is_complete() { object.lod_bias } else { f32::INFINITY };
+        let is_coarser = objects.iter().any(|object| bias(object) != 1.0);
+        let lod_bias = objects.iter().filter(|_| is_coarser).map(bias).collect();
         let about = About { frame, counted: self.counted.clone(), pixels, focal, lod_bias, has_budget };
         self.ring.record(encoder, about, |encoder, to| {
             encoder.copy_buffer_to_buffer(draws, 0, to, 0, draws.size());

@@ -554,6 +554,10 @@ impl ObjectKind for Endless {
         false
     }
 
+    fn is_complete(&self) -> bool {
+        self.statistics.ready == 1.0
+    }
+
     /// Makes all nodes afresh: the device may have missed some.
     fn renew(&mut self, target: MakeOn<'_>, _: &mut Vec<Chunk>) -> Result<(), Error> {
         self.pool.invalidate(target.gpu)?;
