@@ -6,7 +6,7 @@ use crate::scene::handles::ObjectId;
 use crate::scene::object::Object;
 use crate::scene::object_kind::ObjectKind;
 use crate::scene::terrain::endless::Endless;
-use crate::scene::terrain::{EndlessStatistics, Terrain, TerrainDrawable, listed};
+use crate::scene::terrain::{EndlessStatistics, Terrain, TerrainDrawable, TerrainHole, listed};
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
 use crate::{Error, InputError};
@@ -73,6 +73,30 @@ impl Scene {
         let endless = self.object_at(terrain)?.kind.downcast::<Endless>();
         let refused = || InputError::new("terrain", "not endless", "must be made by TerrainSource::endless");
         endless.map(Endless::statistics).ok_or_else(refused)
+    }
+
+    /// Replaces the holes of an endless terrain ([`TerrainSource::with_holes`](crate::scene::TerrainSource::with_holes)), from the next
+    /// frame on.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not in this scene or is not endless terrain, for terrain that was added without holes, and
+    /// for a hole out of bounds ([`TerrainHole::validate`]). In these cases nothing has changed.
+    ///
+    /// # Examples
+    ///
+    /// The mouth of a cave.
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{ObjectId, Scene, TerrainHole};
+    /// # fn example(scene: &mut Scene, land: ObjectId) -> Result<(), relievo::Error> {
+    /// scene.set_terrain_holes(land, &[TerrainHole { at: [120.0, -45.5], radius: 3.0 }])?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn set_terrain_holes(&mut self, terrain: ObjectId, holes: &[TerrainHole]) -> Result<(), InputError> {
+        let endless = self.object_mut(terrain)?.kind.downcast_mut::<Endless>();
+        let refused = || InputError::new("terrain", "not endless", "must be made by TerrainSource::endless");
+        endless.ok_or_else(refused)?.set_holes(holes)
     }
 
     /// Sets which patches the fields of a terrain ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields))

@@ -118,7 +118,7 @@ pub use statistics::{
     BudgetStatistics, CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes,
     ViewStatistics,
 };
-pub use terrain::{EndlessLimits, EndlessStatistics, TerrainSource};
+pub use terrain::{EndlessLimits, EndlessStatistics, TerrainHole, TerrainSource};
 pub(crate) use view::ViewShadow;
 pub use view::{DitherPattern, View};
 pub use watch::{InstanceBone, WatchedBone, WatchedBones};

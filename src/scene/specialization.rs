@@ -185,10 +185,10 @@ impl Specialization {
         Self::new(Program::Relief, state, [full, surface, place].map(|constants| constants.list()))
     }
 
-    /// The specialization of terrain patches, which are double-sided.
-    pub fn terrain(style: TerrainStyle) -> Self {
+    /// The specialization of terrain patches, which are double-sided. `cut_out` tells whether they may have holes.
+    pub fn terrain(style: TerrainStyle, cut_out: bool) -> Self {
         let wireframe = |wireframe| scene_terrain::Constants { wireframe, shadowed: false, fade: 0 }.list();
-        let state = PartState { double_sided: true, ..PartState::default() };
+        let state = PartState { double_sided: true, cut_out, ..PartState::default() };
         let full = wireframe(style == TerrainStyle::Wireframe);
         Self::new(Program::Terrain, state, [full, wireframe(false), wireframe(false)])
     }
@@ -258,7 +258,7 @@ mod tests {
         assert_eq!(mesh(true, true), mesh(true, true));
         assert_ne!(mesh(true, true), mesh(true, false));
         assert_ne!(mesh(true, true), mesh(false, true));
-        assert_ne!(mesh(true, false), Specialization::terrain(TerrainStyle::Textured));
+        assert_ne!(mesh(true, false), Specialization::terrain(TerrainStyle::Textured, false));
     }
 
     #[test]
@@ -269,8 +269,12 @@ mod tests {
         for name in [SHADOWED, OWN_DEPTH, REVERSED] {
             assert!(found.contains(&(name, 1.0)), "{name} in {found:?}");
         }
-        let terrain =
-            Specialization::terrain(TerrainStyle::Wireframe).constants(Shown::Place, false, true, Fade::None);
+        let terrain = Specialization::terrain(TerrainStyle::Wireframe, false).constants(
+            Shown::Place,
+            false,
+            true,
+            Fade::None,
+        );
         assert_eq!(terrain, [(FADE, 0.0), ("relievo_WIREFRAME", 0.0), (SHADOWED, 0.0)]);
     }
 }

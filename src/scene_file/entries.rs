@@ -6,7 +6,7 @@ use glam::{DVec3, Quat, Vec3};
 
 use super::parse_character::CharacterDetail;
 use crate::animation::Wrap;
-use crate::scene::{EndlessLimits, LevelOfDetail, Transition};
+use crate::scene::{EndlessLimits, LevelOfDetail, TerrainHole, Transition};
 use crate::surface::ReliefShadow;
 use crate::surface::relief::ReliefMethod;
 use crate::terrain::morph::Morph;
@@ -21,6 +21,8 @@ pub(super) struct TerrainEntry {
     pub target: Option<(Recipe, Morph)>,
     /// Extent of endless terrain; `None` if `patches` are the terrain.
     pub endless: Option<EndlessLimits>,
+    /// Holes of endless terrain.
+    pub holes: Option<Vec<TerrainHole>>,
 }
 
 /// An entry of `meshes` or `characters`: a model with its instances.

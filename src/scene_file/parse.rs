@@ -10,7 +10,7 @@ use super::parse_object::{character, mesh};
 use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
-use crate::scene::EndlessLimits;
+use crate::scene::{EndlessLimits, TerrainHole};
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
@@ -38,6 +38,9 @@ const BACKGROUND: [f32; 3] = [0.36, 0.55, 0.80];
 
 /// The largest view distance in world units.
 const MOST_VIEW: f64 = 1e9;
+
+/// The largest number of holes.
+const MOST_HOLES: usize = 1024;
 
 const FIELDS: [&str; 7] = ["terrain", "meshes", "characters", "light", "camera", "quality", "background"];
 
@@ -115,10 +118,19 @@ impl SceneFile {
 }
 
 fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
-    let fields = at.fields(&["config", "patches", "target", "time", "endless", "view"])?;
+    let fields = at.fields(&["config", "patches", "target", "time", "endless", "view", "holes"])?;
     let recipe = terrain_recipe(&fields.need("config", "the configuration of `relievo terrain`")?)?;
     if let Some(limits) = endless(&fields)? {
-        return Ok(TerrainEntry { recipe, patches: Vec::new(), target: None, endless: Some(limits) });
+        let hole = |at: At<'_>| {
+            let own = at.fields(&["at", "radius"])?;
+            let hole = TerrainHole {
+                at: own.need("at", "the middle: x and z")?.numbers::<2>(-MOST_VIEW, MOST_VIEW)?,
+                radius: own.need("radius", "in world units")?.number(1e-3, MOST_VIEW)?,
+            };
+            Ok::<_, InputError>(hole)
+        };
+        let holes = fields.maybe("holes", |at| at.list(0, MOST_HOLES)?.into_iter().map(hole).collect())?;
+        return Ok(TerrainEntry { recipe, patches: Vec::new(), target: None, endless: Some(limits), holes });
     }
     let patches = match fields.get("patches") {
         Some(list) => list.list(1, MAX_PATCHES)?.iter().map(patch).collect::<Result<Vec<_>, _>>()?,
@@ -138,7 +150,7 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         return Err(InputError::new(format!("{path}.len"), patches.len(), bound));
     }
     let target = target(&fields, &recipe, &patches)?;
-    Ok(TerrainEntry { recipe, patches, target, endless: None })
+    Ok(TerrainEntry { recipe, patches, target, endless: None, holes: None })
 }
 
 /// The limits of endless terrain; `None` if it is a list of patches.
@@ -146,6 +158,9 @@ fn endless(fields: &Fields<'_>) -> Result<Option<EndlessLimits>, InputError> {
     let is_endless = fields.maybe("endless", |at| at.flag())?.unwrap_or(false);
     let view_distance = fields.maybe("view", |at| at.number(1e-3, MOST_VIEW))?;
     if !is_endless {
+        if fields.get("holes").is_some() {
+            return Err(fields.missing("endless", "true, since holes are given"));
+        }
         let missing = |_| Err(fields.missing("endless", "true, since a view distance is given"));
         return view_distance.map_or(Ok(None), missing);
     }

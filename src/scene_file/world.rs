@@ -99,6 +99,10 @@ impl LoadedScene {
                 Some(limits) => source.with_limits(limits),
                 None => source,
             };
+            let source = match &terrain.holes {
+                Some(holes) => source.with_holes(holes.clone()),
+                None => source,
+            };
             let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;
             land = Some(object);
             let name = terrain.recipe.config.seed.clone();

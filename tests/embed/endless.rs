@@ -9,7 +9,8 @@ use relievo::ops::terrain::smooth::reference::smooth;
 use relievo::ops::terrain::window::Region;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
-    Camera, EndlessLimits, ObjectId, Placement, Quality, Ray, Scene, TerrainConfig, TerrainSource, View,
+    Camera, EndlessLimits, ObjectId, Placement, Quality, Ray, Scene, TerrainConfig, TerrainHole,
+    TerrainSource, View,
 };
 
 use crate::harness::gpu;
@@ -36,10 +37,13 @@ struct World {
 
 impl World {
     fn new(config: TerrainConfig, limits: EndlessLimits, size: [u32; 2]) -> Self {
+        Self::of(&TerrainSource::endless(config).with_limits(limits), size)
+    }
+
+    fn of(source: &TerrainSource, size: [u32; 2]) -> Self {
         let gpu = gpu();
         let mut scene = Scene::new(&gpu).expect("made");
-        let source = TerrainSource::endless(config).with_limits(limits);
-        let land = scene.add_terrain(&source).expect("added");
+        let land = scene.add_terrain(source).expect("added");
         let view = scene.view(Quality::pixels(1.0)).expect("made");
         let raw = Raw::new(&gpu, TargetFormat::measure(), size);
         let measure = raw.renderer(&gpu, &scene);
@@ -359,6 +363,61 @@ fn nodes_are_made_again_after_a_loss() {
     world.settle();
     assert_eq!(made(&world), nodes);
     assert!(picture(&mut world) == before, "after a lost device");
+}
+
+/// Triangles with a corner in a hole are left out, for the picture and for the host; a mesh can then be the cave.
+#[test]
+fn holes_are_left_out_and_closed_again() {
+    let config = config();
+    let source = TerrainSource::endless(config.clone());
+    let hole = TerrainHole { at: [24.5, -60.0], radius: 9.25 };
+    let mut world = World::of(&source.clone().with_holes(vec![hole]), [160, 120]);
+    let top = truth(&config, hole.at[0], hole.at[1]) + 60.0;
+    let (eye, target) = ([hole.at[0], top, hole.at[1] + 25.0], [hole.at[0], top - 60.0, hole.at[1]]);
+    let camera = Camera::looking_at_world(eye, target, 0.9, [0.5, 12_000.0], world.raw.size);
+    world.view.set(camera).expect("valid");
+    world.settle();
+    let drawn = world.positions(&camera);
+    // A sample lies in the hole or not; a triangle reaches a sample's distance further at most.
+    let away = |place: &DVec3| (place.x - hole.at[0]).hypot(place.z - hole.at[1]);
+    let nearest = drawn.iter().flatten().map(away).fold(f64::INFINITY, f64::min);
+    assert!(nearest > hole.radius - 0.8 && nearest < hole.radius + 1.5, "{nearest}");
+    let left_out = drawn.iter().filter(|place| place.is_none()).count();
+    assert!((700..6_000).contains(&left_out), "{left_out}");
+    for (pixel, place) in drawn.iter().enumerate().step_by(37) {
+        let [x, y] = [pixel % 160, pixel / 160].map(|at| at as f32 + 0.5);
+        let hit = world.scene.pick(&Ray::through(&camera, [x, y]).expect("inside")).expect("valid");
+        assert_eq!(hit.is_some(), place.is_some(), "{x} {y}");
+        if let (Some(hit), Some(place)) = (hit, place) {
+            assert!(hit.world().distance(*place) < 0.3, "{} {place}", hit.world());
+        }
+    }
+    let ground = |world: &World, at: [f64; 2]| world.scene.ground(world.land, at[0], at[1]).expect("valid");
+    assert_eq!(ground(&world, hole.at), None);
+    assert!(ground(&world, [hole.at[0] + 11.0, hole.at[1]]).is_some());
+    // Closed again, the picture is that of terrain without holes; opened again, it is the first one.
+    let open = picture(&mut world);
+    world.scene.set_terrain_holes(world.land, &[]).expect("changed");
+    world.settle();
+    let mut whole = World::of(&source, world.raw.size);
+    whole.view.set(camera).expect("valid");
+    whole.settle();
+    let closed = picture(&mut world);
+    assert!(closed == picture(&mut whole) && closed != open);
+    assert!(ground(&world, hole.at).is_some());
+    world.scene.set_terrain_holes(world.land, &[hole]).expect("changed");
+    world.settle();
+    assert!(picture(&mut world) == open);
+    // From afar it is narrower than a pixel, and needs no finest nodes.
+    let far = world.above([0.0, 3_000.0], 9_000.0);
+    world.view.set(far).expect("valid");
+    world.settle();
+    assert_eq!(world.scene.terrain_statistics(world.land).expect("endless").levels[0], 0);
+    let refused = |hole: TerrainHole| hole.validate().expect_err("refused").path;
+    assert_eq!(refused(TerrainHole { radius: 0.0, ..hole }), "radius");
+    assert_eq!(refused(TerrainHole { at: [f64::NAN, 0.0], ..hole }), "at");
+    let without = whole.scene.set_terrain_holes(whole.land, &[hole]).expect_err("refused").to_string();
+    assert!(without.contains("with_holes"), "{without}");
 }
 
 /// Two views far apart in one frame, and the sun's view of one of them: each shows its place.

@@ -6,6 +6,7 @@ mod characters;
 mod cracks;
 mod culled;
 mod curved;
+mod endless;
 mod faults;
 mod figure;
 mod generators;

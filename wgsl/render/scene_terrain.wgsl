@@ -91,6 +91,10 @@ struct TerrainPatch {
     window: u32,
     // Level of the node: its samples are 2^`level` of the terrain's samples apart. 0 except in endless terrain.
     level: u32,
+    // 1 + index of the first word of the patch's holes in `holes`; 0 for a patch without holes.
+    holes: u32,
+    // Padding, not read.
+    unused: u32,
 }
 
 // Placement of the terrain in the view.
@@ -109,6 +113,8 @@ struct TerrainPatch {
 @group(2) @binding(4) var textures: texture_2d_array<f32>;
 // Sampler of the zone textures.
 @group(2) @binding(5) var texture_sampler: sampler;
+// One bit per vertex of a patch with holes, row by row, from a whole word on: whether triangles at this vertex are left out.
+@group(2) @binding(6) var<storage, read> holes: array<u32>;
 
 // Height gradient of a patch at the sample `at`, from samples `reach` apart, as differences over two samples.
 fn gradient_of(center: u32, reach: u32) -> vec2<f32> {
@@ -158,6 +164,13 @@ fn morphed(limit: f32, position: vec3<f32>) -> f32 {
     return clamp((ground.fraction * allowed / max(limit, 1e-30) - MORPH_START) / (1.0 - MORPH_START), 0.0, 1.0);
 }
 
+// 1 if the triangles at a vertex of a patch are left out, else 0.
+fn hole_at(patch_of: TerrainPatch, at: vec2<u32>) -> f32 {
+    let bit = at.y * terrain.size + at.x;
+    let word = holes[select(0u, patch_of.holes - 1u + bit / 32u, patch_of.holes != 0u)];
+    return select(0.0, f32((word >> (bit % 32u)) & 1u), patch_of.holes != 0u);
+}
+
 // Places a vertex of a patch. A sample gets bit-identical positions in all patches, so that patches that share an edge leave no
 // crack. Values of the result: barycentric coordinates (xyz: 1 at one corner of each triangle, 0 at the others), and the height
 // in world units (w).
@@ -190,7 +203,8 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     return SceneVertex(
         sample + vec3<f32>(0.0, height, 0.0), gradient_normal(gradient, steps * terrain.run),
         vec4<f32>(1.0, 0.0, 0.0, 1.0),
-        vec4<f32>(patch_of.uv + steps * vec2<f32>(at) * terrain.tiling, 0.0, 0.0), values, vec3<u32>(0u), 1.0);
+        vec4<f32>(patch_of.uv + steps * vec2<f32>(at) * terrain.tiling, hole_at(patch_of, at), 0.0), values,
+        vec3<u32>(0u), 1.0);
 }
 
 // Position of a vertex in the last frame: its current position, because the ground does not move.
@@ -236,6 +250,9 @@ fn terrain_surface(in: SceneFragment) -> Surface {
     } else {
         surface.color = ground_color(in.uv.xy, in.values.w, surface.normal);
     }
+    // Above 0 in a triangle with a corner in a hole.
+    surface.alpha = select(1.0, 0.0, in.uv.z > 1e-4);
+    surface.cutoff = 0.5;
     surface.object = ground.object;
     surface.instance = terrain.first_patch + in.instance;
     return surface;

@@ -121,6 +121,8 @@ fn drawable(
         heights: fields.heights.clone(),
         patches,
         indices: triangles.clone(),
+        holes: Buffer::new(gpu, "no holes", 1)?,
+        has_holes: false,
         zones: zones.clone(),
     };
     Ok(TerrainDrawable::new(gpu, layouts, geometry, source.style)?)
@@ -134,6 +136,8 @@ pub(in crate::scene) fn listed(config: &TerrainConfig, patches: &[[i32; 2]]) -> 
         uv: patch.map(|index| (f64::from(index) * tiles).rem_euclid(f64::from(TILES_PERIOD)) as f32),
         window,
         level: 0,
+        holes: 0,
+        unused: 0,
     };
     (0..).zip(patches).map(patch).collect()
 }

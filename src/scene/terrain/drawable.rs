@@ -22,6 +22,10 @@ pub(crate) struct TerrainGeometry {
     pub indices: Buffer<u32>,
     /// Zones and their textures.
     pub zones: Materials,
+    /// Holes of patches, one bit per vertex.
+    pub holes: Buffer<u32>,
+    /// Whether any patch may have holes.
+    pub has_holes: bool,
 }
 
 /// Terrain patches on the device.
@@ -53,8 +57,9 @@ impl TerrainDrawable {
             zones: geometry.zones.zones.slice(),
             textures: &geometry.zones.view(),
             texture_sampler: &geometry.zones.sampler,
+            holes: geometry.holes.slice(),
         };
-        let specialization = Specialization::terrain(style);
+        let specialization = Specialization::terrain(style, geometry.has_holes);
         Ok(Self { group: group.bind(gpu, &layouts.terrain)?, geometry, specialization })
     }
 }

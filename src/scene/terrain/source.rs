@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::endless::EndlessLimits;
+use super::endless::{EndlessLimits, TerrainHole};
 use crate::InputError;
 use crate::scene::options::TerrainStyle;
 use crate::terrain::blend::Shading;
@@ -36,6 +36,8 @@ pub struct TerrainSource {
     pub(super) target: Option<(Box<Recipe>, Morph)>,
     /// Extent and memory of endless terrain; `None` for a list of patches.
     pub(super) endless: Option<EndlessLimits>,
+    /// Holes of endless terrain; `None` for terrain that can have none.
+    pub(super) holes: Option<Vec<TerrainHole>>,
 }
 
 impl TerrainSource {
@@ -52,6 +54,8 @@ impl TerrainSource {
     /// [`EndlessLimits::nodes_per_frame`] in a frame; until then coarser nodes are drawn. Each view draws nodes whose vertices lie
     /// within [`Quality::pixels`](crate::scene::Quality::pixels) of the terrain's finest heights. Between two levels, vertices move
     /// continuously. [`Scene::terrain_statistics`](crate::scene::Scene::terrain_statistics) tells how much of the detail is there.
+    ///
+    /// Views that permit less than 1/16 pixel are drawn as with 1/16, and state no bound.
     ///
     /// The configuration must be `seamless`. Features, despiking, erosion and a target are not possible. [`Scene::ground`] and
     /// [`Scene::pick`] answer for the finest heights everywhere, whatever is drawn; the host makes those patches when it is asked.
@@ -77,6 +81,15 @@ impl TerrainSource {
     #[must_use]
     pub fn with_limits(self, limits: EndlessLimits) -> Self {
         Self { endless: Some(limits), ..self }
+    }
+
+    /// Leaves holes in endless terrain, for caves whose ground and roof are meshes of the caller. Triangles with a corner in a hole
+    /// are left out, also for [`Scene::ground`](crate::scene::Scene::ground) and [`Scene::pick`](crate::scene::Scene::pick). From
+    /// afar, a hole narrower than the view's pixels is closed. [`Scene::set_terrain_holes`](crate::scene::Scene::set_terrain_holes)
+    /// changes the holes; give an empty list if there are none at first. Terrain with holes is drawn a little slower.
+    #[must_use]
+    pub fn with_holes(self, holes: Vec<TerrainHole>) -> Self {
+        Self { holes: Some(holes), ..self }
     }
 
     /// Terrain from heights that the caller's passes have computed or will compute. The first field shows the first
@@ -112,7 +125,16 @@ impl TerrainSource {
 
     fn of(origin: Origin) -> Self {
         let (shading, style) = (Shading::default(), TerrainStyle::Textured);
-        Self { origin, patches: vec![[0, 0]], textures: None, shading, style, target: None, endless: None }
+        Self {
+            origin,
+            patches: vec![[0, 0]],
+            textures: None,
+            shading,
+            style,
+            target: None,
+            endless: None,
+            holes: None,
+        }
     }
 
     /// Replaces the patches to show. Each patch is given by its column, counted to the east, and its row, counted to
@@ -166,9 +188,13 @@ impl TerrainSource {
     /// The recipe and the limits of endless terrain; `None` for a list of patches.
     ///
     /// # Errors
-    /// [`InputError`] for endless terrain from fields or with a target.
+    /// [`InputError`] for endless terrain from fields or with a target, and for holes in patches.
     pub(in crate::scene) fn endless_recipe(&self) -> Result<Option<(&Recipe, EndlessLimits)>, InputError> {
-        let Some(limits) = self.endless else { return Ok(None) };
+        let Some(limits) = self.endless else {
+            let bound = || "must not be given unless terrain is endless";
+            InputError::check(self.holes.is_none(), "holes", "given", bound)?;
+            return Ok(None);
+        };
         let refused =
             |field: &str| Err(InputError::new(field, "given", "must not be given where terrain is endless"));
         match (&self.origin, &self.target) {

@@ -5,6 +5,14 @@ use serde_json::Value;
 use crate::assert_refused;
 use crate::scene_file::{Folder, good};
 
+/// Endless terrain whose view is farther than its coarsest nodes reach.
+const ENDLESS_FAR: &str =
+    r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "far"}, "endless": true, "view": 1000}"#;
+
+/// Endless terrain with a hole that is none.
+const ENDLESS_HOLE: &str = r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "hole"}, "endless": true,
+    "holes": [{"at": [1, 2], "radius": 0}]}"#;
+
 /// Mistakes: the place in the good scene, the JSON that comes there (`null` removes what is there; see [`value`]), and the
 /// path with the value and some words of the message.
 const MISTAKES: &[(&str, &str, &str, &str)] = &[
@@ -48,6 +56,13 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     ("/terrain/patches", "[]", "terrain.patches.len = 0", "1..=4096"),
     ("/terrain/patches", "LONG", "terrain.patches.len = 4097", "1..=4096"),
     ("/terrain/patches/1", "[0, 0]", "terrain.patches[1] = [0, 0]", "listed before"),
+    ("/terrain/endless", "1", "terrain.endless = 1", "true or false"),
+    ("/terrain/endless", "true", "terrain.patches", "where terrain is endless"),
+    ("/terrain/view", "100", "terrain.endless = missing", "view distance"),
+    ("/terrain/view", "0", "terrain.view = 0", "0.001..="),
+    ("/terrain/holes", "[]", "terrain.endless = missing", "holes"),
+    ("/terrain", ENDLESS_FAR, "terrain.view_distance = 1000", "coarse_levels"),
+    ("/terrain", ENDLESS_HOLE, "terrain.holes[0].radius = 0", "0.001..="),
     ("/terrain/patches/1", "[600000, 0]", "terrain.patches[1] = 600000", "i32"),
     ("/meshes/0/instances/0/scale", "0", "meshes[0].instances[0].scale = 0", "1e-6"),
     ("/meshes/0/instances/0/scale", "[1, 2, 1e9]", "meshes[0].instances[0].scale[2]", "1000000"),

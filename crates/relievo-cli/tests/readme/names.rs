@@ -108,6 +108,8 @@ fn members() {
     let _ = Scene::drive; // Scene::drive
     let _ = Scene::ground; // Scene::ground
     let _ = Scene::terrain_statistics; // Scene::terrain_statistics
+    let _ = Scene::set_terrain_holes; // Scene::set_terrain_holes
+    let _ = relievo::scene::TerrainSource::with_holes; // TerrainSource::with_holes
     let _ = relievo::scene::TerrainSource::endless; // TerrainSource::endless
     let _ = |limits: relievo::scene::EndlessLimits| limits.node_size; // EndlessLimits::node_size
     let _ = |limits: relievo::scene::EndlessLimits| limits.capacity; // EndlessLimits::capacity

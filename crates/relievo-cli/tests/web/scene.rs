@@ -248,7 +248,7 @@ fn kernels_equal_their_references_in_the_browser() {
     let said = said();
     assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
     let all = said["parity"].as_object().expect("an operation each");
-    assert_eq!(all.len(), 7);
+    assert_eq!(all.len(), 6);
     for (operation, result) in all {
         let lines: Vec<&str> =
             result.as_array().expect("lines").iter().filter_map(|line| line.as_str()).collect();

@@ -66,6 +66,8 @@ impl Land {
             uv: patch.map(|at| (f64::from(at) * tiles).rem_euclid(f64::from(TILES_PERIOD)) as f32),
             window,
             level: 0,
+            holes: 0,
+            unused: 0,
         };
         let patches: Vec<_> = (0..).zip(PATCHES).map(patch).collect();
         let indices = patch_indices(size);
@@ -75,6 +77,8 @@ impl Land {
             patches: Buffer::from_slice(gpu, "patches", &patches).expect("uploaded"),
             indices: Buffer::from_slice(gpu, "indices", &indices).expect("uploaded"),
             zones,
+            holes: Buffer::new(gpu, "holes", 1).expect("allocated"),
+            has_holes: false,
         };
         let terrain = TerrainDrawable::new(gpu, layouts, geometry, style).expect("bound");
         (terrain, indices.len() as u32)

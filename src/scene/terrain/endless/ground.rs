@@ -5,6 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::DVec3;
 
+use super::TerrainHole;
 use crate::InputError;
 use crate::scene::object_kind::UnitRay;
 use crate::scene::ray::SurfaceHit;
@@ -46,18 +47,33 @@ impl FinestGround {
         Ok(Self { recipe: recipe.clone(), patch, edge, patches: Mutex::new(patches) })
     }
 
-    /// The ground at a world position; `None` beyond the world.
-    pub fn point_at(&self, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
+    /// The ground at a world position; `None` beyond the world and in holes.
+    pub fn point_at(&self, x: f64, z: f64, holes: &[TerrainHole]) -> Result<Option<GroundPoint>, InputError> {
+        if self.is_left_out(x, z, holes) {
+            return Ok(None);
+        }
         let Some(patch) = self.patch_at(x, z) else { return Ok(None) };
         Ok(self.with(patch)?.and_then(|patches| patches.ground.point_at(x, z)))
     }
 
-    /// The first hit of a ray within a box of the world. `origin` is the ray's in world units.
+    /// Whether the triangle at a world position is left out, because a corner of it lies in a hole.
+    fn is_left_out(&self, x: f64, z: f64, holes: &[TerrainHole]) -> bool {
+        let scale = self.patch.terrain_scale;
+        let [u, v] = [x, z].map(|at| at / scale);
+        let [column, row] = [u.floor(), v.floor()];
+        // The diagonal of a cell runs from south-west to north-east.
+        let corner = if (u - column) + (v - row) <= 1.0 { [0.0, 0.0] } else { [1.0, 1.0] };
+        let corners = [corner, [1.0, 0.0], [0.0, 1.0]];
+        let samples = corners.map(|[x, z]| [(column + x) * scale, (row + z) * scale]);
+        holes.iter().any(|hole| samples.iter().any(|sample| hole.contains(*sample)))
+    }
+
+    /// The first hit of a ray within a box of the world, not in a hole. `origin` is the ray's in world units.
     pub fn hit(
         &self,
         [low, high]: [DVec3; 2],
-        origin: DVec3,
-        ray: &UnitRay,
+        (origin, ray): (DVec3, &UnitRay),
+        holes: &[TerrainHole],
     ) -> Result<Option<SurfaceHit>, InputError> {
         let (mut from, mut to) = (0.0_f64, ray.limit);
         for axis in 0..3 {
@@ -77,10 +93,19 @@ impl FinestGround {
             let at = origin + (from + step) * ray.direction;
             let Some(patch) = self.patch_at(at.x, at.z) else { return Ok(None) };
             let corner = DVec3::new(f64::from(patch[0]), 0.0, f64::from(patch[1])) * self.edge;
-            if let Some(patches) = self.with(patch)?
-                && let Some(hit) = patches.ground.hit(patch, [origin - corner, ray.direction], ray.limit)
+            // A hit in a hole is passed.
+            let mut passed = 0.0;
+            while let Some(patches) = self.with(patch)?
+                && let start = origin + passed * ray.direction
+                && let Some(hit) =
+                    patches.ground.hit(patch, [start - corner, ray.direction], ray.limit - passed)
             {
-                return Ok(Some(SurfaceHit { distance: hit.distance, normal: hit.normal }));
+                let distance = passed + hit.distance;
+                let at = origin + distance * ray.direction;
+                if !self.is_left_out(at.x, at.z, holes) {
+                    return Ok(Some(SurfaceHit { distance, normal: hit.normal }));
+                }
+                passed = distance + 1e-6 * self.patch.terrain_scale;
             }
             let leaves = |axis: usize| {
                 let (at, along) = (origin[axis] - corner[axis], ray.direction[axis]);

@@ -55,6 +55,9 @@ const SOON: f32 = 0.8;
 /// How much coarser nodes may be that a camera does not see.
 const OUTSIDE: f32 = 4.0;
 
+/// The least error in pixels for which detail is made. Without any, no number of nodes would do.
+const LEAST_PIXELS: f32 = 1.0 / 16.0;
+
 /// Largest LOD bias.
 const MOST_BIAS: f32 = 1024.0;
 
@@ -95,6 +98,38 @@ impl EndlessLimits {
     }
 }
 
+/// A hole in endless terrain: triangles with a corner in this circle are left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TerrainHole {
+    /// World position of the middle: x and z.
+    pub at: [f64; 2],
+    /// Radius in world units, above 0.
+    pub radius: f64,
+}
+
+impl TerrainHole {
+    /// Checks that all numbers are finite and the radius is above 0.
+    ///
+    /// # Errors
+    /// [`InputError`] that names `at` or `radius`.
+    pub fn validate(&self) -> Result<(), InputError> {
+        let [x, z] = self.at;
+        InputError::check(x.is_finite() && z.is_finite(), "at", format!("[{x}, {z}]"), || "must be finite")?;
+        let is_radius = self.radius > 0.0 && self.radius.is_finite();
+        InputError::check(is_radius, "radius", self.radius, || "must be above 0 and finite")
+    }
+
+    /// Whether the hole contains a world position.
+    pub(super) fn contains(&self, at: [f64; 2]) -> bool {
+        (at[0] - self.at[0]).hypot(at[1] - self.at[1]) <= self.radius
+    }
+
+    /// Whether the hole reaches into a square with its smallest corner at `corner`.
+    pub(super) fn reaches(&self, corner: [f64; 2], edge: f64) -> bool {
+        self.contains(std::array::from_fn(|axis| self.at[axis].clamp(corner[axis], corner[axis] + edge)))
+    }
+}
+
 /// The nodes of an endless terrain, after a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EndlessStatistics {
@@ -131,7 +166,13 @@ pub(in crate::scene) struct Endless {
     new: Vec<NewNode>,
     tables: Arc<Mutex<Vec<ViewTable>>>,
     ground: FinestGround,
+    /// The holes; `None` for terrain that was added without.
+    holes: Option<Vec<TerrainHole>>,
+    /// Whether holes have changed since they were staged.
+    are_holes_changed: bool,
     statistics: EndlessStatistics,
+    /// Whether the views of the last frame permit an error for which detail is made.
+    is_bounded: bool,
     /// Factor of the allowed displacement: 1, or more if the nodes that views need exceed the memory.
     lod_bias: f32,
 }
@@ -175,7 +216,9 @@ pub(in crate::scene) fn made(
     let view_distance = limits.checked(&recipe.config)?;
     let mut instances = Instances::new(limits.capacity as usize);
     let capacity = instances.capacity();
-    let pool = Pool::new(gpu, recipe, grid, capacity)?;
+    let holes = source.holes.clone();
+    check_holes(holes.as_deref().unwrap_or_default())?;
+    let pool = Pool::new(gpu, recipe, grid, (capacity, holes.is_some()))?;
     let (chunks, draws) = drawn(gpu, layouts, source, (&pool, grid, capacity))?;
     let hidden = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
     for _ in 0..capacity {
@@ -194,7 +237,10 @@ pub(in crate::scene) fn made(
         new: Vec::new(),
         tables: Arc::default(),
         ground: FinestGround::new(recipe)?,
+        holes,
+        are_holes_changed: false,
         statistics: EndlessStatistics { capacity, ..EndlessStatistics::default() },
+        is_bounded: true,
         lod_bias: 1.0,
     };
     Ok((endless, instances, (chunks, draws)))
@@ -233,6 +279,8 @@ fn drawn(
         patches: pool.patches.clone(),
         indices: Buffer::constant(gpu, "triangles of a node", &indices)?,
         zones,
+        holes: pool.holes.clone(),
+        has_holes: source.holes.is_some(),
     };
     let drawable = TerrainDrawable::new(gpu, layouts, geometry, source.style)?;
     let mut draws = vec![NOTHING; OBJECT_LEVELS as usize];
@@ -246,7 +294,7 @@ impl Endless {
     /// # Errors
     /// [`InputError`] for a position beyond the world.
     pub fn point_at(&self, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
-        self.ground.point_at(x, z)
+        self.ground.point_at(x, z, self.holes.as_deref().unwrap_or_default())
     }
 
     /// The nodes after the last frame.
@@ -316,6 +364,7 @@ impl Endless {
         let Some(Facts { error, .. }) = self.residents.get(&node).and_then(|resident| resident.facts) else {
             return false;
         };
+        let error = error.max(self.hole_error(node));
         let [low, high] = self.node_box(node).map(|at| at - Placement::corner(view.cell.into()));
         // A sphere around parts of the node allows more than one around the whole node.
         let allows = |parts: u32| {
@@ -329,6 +378,30 @@ impl Endless {
             })
         };
         !allows(1) && !allows(PARTS)
+    }
+
+    /// The error of a node because of holes, which only the finest nodes have: the width of the widest hole that is missing.
+    fn hole_error(&self, node: Node) -> f32 {
+        let edge = self.edge(node.level);
+        let corner = node.at.map(|at| f64::from(at) * edge);
+        let missing = self.holes.iter().flatten().filter(|hole| node.level > 0 && hole.reaches(corner, edge));
+        let width = |hole: &TerrainHole| 2.0 * (hole.radius + self.config().terrain_scale) as f32;
+        missing.map(width).fold(0.0, f32::max)
+    }
+
+    /// Replaces the holes.
+    ///
+    /// # Errors
+    /// [`InputError`] for terrain that was added without holes, and for a hole out of bounds.
+    pub fn set_holes(&mut self, holes: &[TerrainHole]) -> Result<(), InputError> {
+        check_holes(holes)?;
+        let Some(own) = &mut self.holes else {
+            let bound = "must be made with TerrainSource::with_holes, which may be none at first";
+            return Err(InputError::new("terrain", "without holes", bound));
+        };
+        *own = holes.to_vec();
+        self.are_holes_changed = true;
+        Ok(())
     }
 
     /// Stores the facts that have arrived. Returns the nodes whose facts are new.
@@ -394,12 +467,12 @@ impl Endless {
     /// The limit of a node's vertices: the displacement at which the next coarser level is allowed, or more if the node itself is
     /// nearly as far off.
     fn limit(&self, node: Node) -> f32 {
-        let error = |node: Node| self.residents.get(&node).and_then(|resident| resident.facts);
+        let facts = |node: Node| self.residents.get(&node).and_then(|resident| resident.facts);
+        let error = |node: Node| facts(node).map(|facts| facts.error.max(self.hole_error(node)));
         if node.level == self.grid.top {
             return f32::MAX;
         }
-        let coarser = error(node.parent()).map_or(f32::MAX, |facts| facts.error);
-        coarser.max(error(node).map_or(0.0, |facts| facts.error) / MORPH_START)
+        error(node.parent()).unwrap_or(f32::MAX).max(error(node).unwrap_or(0.0) / MORPH_START)
     }
 
     /// How a view draws its nodes.
@@ -425,6 +498,7 @@ impl Endless {
 
     /// Chooses what the views of a frame draw, and what the frame makes. Returns the instances that are placed anew.
     fn choose(&mut self, views: &[SelectView], fraction: f32) -> Result<Vec<Node>, Error> {
+        let views = &views.iter().map(with_pixels).collect::<Vec<_>>()[..];
         self.frame += 1;
         self.new.clear();
         let mut moved = self.arrive();
@@ -433,10 +507,12 @@ impl Endless {
         for root in &roots {
             match self.residents.get_mut(root) {
                 Some(resident) => resident.used = self.frame,
-                None => match self.admit(*root) {
+                // The roots of one camera fit the smallest limit. Those of many may have to wait.
+                None if self.new.len() < self.limits.nodes_per_frame as usize => match self.admit(*root) {
                     Some(new) => self.new.push(new),
                     None => self.statistics.refused += 1,
                 },
+                None => {}
             }
         }
         let (mut missing, mut soon, mut tables) = (Vec::new(), Vec::new(), Vec::new());
@@ -517,6 +593,20 @@ impl Endless {
     }
 }
 
+/// A view that permits at least [`LEAST_PIXELS`].
+fn with_pixels(view: &SelectView) -> SelectView {
+    let mut view = *view;
+    view.cameras.iter_mut().for_each(|camera| camera.pixels = camera.pixels.max(LEAST_PIXELS));
+    view
+}
+
+fn check_holes(holes: &[TerrainHole]) -> Result<(), InputError> {
+    let below = |(at, hole): (usize, &TerrainHole)| {
+        hole.validate().map_err(|error| error.below(&format!("holes[{at}]")))
+    };
+    holes.iter().enumerate().try_for_each(below)
+}
+
 /// The displacement that a camera allows to a sphere if it turns towards it. Spheres that it does not see as it is may be
 /// [`OUTSIDE`] times coarser.
 fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
@@ -555,7 +645,7 @@ impl ObjectKind for Endless {
     }
 
     fn is_complete(&self) -> bool {
-        self.statistics.ready == 1.0
+        self.statistics.ready == 1.0 && self.is_bounded
     }
 
     /// Makes all nodes afresh: the device may have missed some.
@@ -569,7 +659,7 @@ impl ObjectKind for Endless {
         let MakeOn { gpu, layouts, .. } = target;
         Box::pin(async move {
             let capacity = self.statistics.capacity;
-            let pool = Pool::new(gpu, &self.recipe, self.grid, capacity)?;
+            let pool = Pool::new(gpu, &self.recipe, self.grid, (capacity, self.holes.is_some()))?;
             let (chunks, _) = drawn(gpu, layouts, &self.source, (&pool, self.grid, capacity))?;
             Ok(OnDevice { chunks, other: Box::new(pool) })
         })
@@ -601,6 +691,8 @@ impl ObjectKind for Endless {
         seen: &SeenBy<'_>,
         _: &mut Vec<Chunk>,
     ) -> Result<Provided, Error> {
+        let asked = seen.views.iter().flat_map(SelectView::cameras).map(|camera| camera.pixels);
+        self.is_bounded = asked.fold(f32::INFINITY, f32::min) >= LEAST_PIXELS;
         let moved = self.choose(seen.views, seen.object.metric_scale * self.lod_bias)?;
         self.pool.make(gpu, &self.recipe.config, &self.new)?;
         let placed = moved.into_iter().filter_map(|node| Some((node, self.residents.get(&node)?.slot)));
@@ -613,7 +705,14 @@ impl ObjectKind for Endless {
     }
 
     fn stage(&mut self, staged: &mut Staged, _: &Frame, _: f64) -> Result<(), Error> {
-        self.pool.stage(staged, &self.recipe.config, &self.new)
+        let (config, holes) = (&self.recipe.config, self.holes.as_deref().unwrap_or_default());
+        if std::mem::take(&mut self.are_holes_changed) {
+            let finest = self.residents.iter().filter(|(node, _)| node.level == 0);
+            for (node, Resident { slot, .. }) in finest {
+                self.pool.stage_patch(staged, config, NewNode { node: *node, slot: *slot }, holes)?;
+            }
+        }
+        self.pool.stage(staged, config, &self.new, holes)
     }
 
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {
@@ -627,7 +726,8 @@ impl ObjectKind for Endless {
         let Some((node, _)) = own.filter(|(node, _)| node.level == self.grid.top) else {
             return Ok(None);
         };
-        self.ground.hit(self.node_box(*node), Placement::corner(instance.cell) + ray.origin, ray)
+        let (origin, holes) = (Placement::corner(instance.cell) + ray.origin, self.holes.as_deref());
+        self.ground.hit(self.node_box(*node), (origin, ray), holes.unwrap_or_default())
     }
 
     fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {

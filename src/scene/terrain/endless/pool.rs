@@ -1,5 +1,6 @@
 //! The nodes of an endless terrain on the device: tiles of heights in a pool of fixed size, and the jobs that make them.
 
+use super::TerrainHole;
 use crate::gpu::{Buffer, Gpu, Job, ReadbackRing, Staged, Upload as _};
 use crate::scene::FRAMES_IN_FLIGHT;
 use crate::shared::render::scene_terrain::TerrainPatch;
@@ -35,6 +36,8 @@ pub(super) struct Pool {
     pub tiles: Buffer<i32>,
     /// The node of each tile.
     pub patches: Buffer<TerrainPatch>,
+    /// Holes of the nodes, one bit per vertex; for terrain that may have holes.
+    pub holes: Buffer<u32>,
     facts: Buffer<u32>,
     ring: ReadbackRing<u64>,
     grid: Grid,
@@ -109,6 +112,11 @@ impl Grid {
         node.at.map(|at| (i64::from(at) * cells - i64::from(NODE_MARGIN)) << finer)
     }
 
+    /// Number of words of a node's holes.
+    pub fn hole_words(self) -> usize {
+        (self.cells as usize + 1).pow(2).div_ceil(32)
+    }
+
     /// Number of levels by which the finer heights of a node of a level are coarser than the terrain.
     pub fn coarser(self, level: u32) -> u32 {
         level - self.shape(level).finer
@@ -116,11 +124,16 @@ impl Grid {
 }
 
 impl Pool {
-    /// Allocates a pool of `capacity` tiles.
+    /// Allocates a pool of `capacity` tiles, with memory for holes if `has_holes`.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub fn new(gpu: &Gpu, recipe: &Recipe, grid: Grid, capacity: usize) -> Result<Self, Error> {
+    pub fn new(
+        gpu: &Gpu,
+        recipe: &Recipe,
+        grid: Grid,
+        (capacity, has_holes): (usize, bool),
+    ) -> Result<Self, Error> {
         let config = &recipe.config;
         let width = (0..=grid.top).map(|level| grid.shape(level).region_width()).max().unwrap_or(0);
         // The largest scratch is that of the widest regions with the most subdivisions.
@@ -133,6 +146,11 @@ impl Pool {
                 capacity * (grid.shape(0).tile_width() as usize).pow(2),
             )?,
             patches: Buffer::new(gpu, "patches", capacity)?,
+            holes: Buffer::new(
+                gpu,
+                "holes of nodes",
+                if has_holes { capacity * grid.hole_words() } else { 1 },
+            )?,
             facts: Buffer::new(gpu, "facts of nodes", words)?,
             ring: ReadbackRing::new(gpu, "facts of nodes", FRAMES_IN_FLIGHT, 4 * words as u64)?,
             generator: RegionPass::new(gpu, config, None)?,
@@ -196,7 +214,13 @@ impl Pool {
     ///
     /// # Errors
     /// [`InputError`] for a node beyond the world; [`crate::gpu::GpuError`].
-    pub fn stage(&self, staged: &mut Staged, config: &TerrainConfig, new: &[NewNode]) -> Result<(), Error> {
+    pub fn stage(
+        &self,
+        staged: &mut Staged,
+        config: &TerrainConfig,
+        new: &[NewNode],
+        holes: &[TerrainHole],
+    ) -> Result<(), Error> {
         for level in 0..self.jobs.len() {
             let own: Vec<NewNode> =
                 new.iter().filter(|new| new.node.level as usize == level).copied().collect();
@@ -209,11 +233,31 @@ impl Pool {
             }
         }
         for new in new {
-            staged.elements(&self.patches, new.slot as usize, &[patch_of(config, self.grid, *new)])?;
+            self.stage_patch(staged, config, *new, holes)?;
             let none = [0; NODE_FACTS as usize];
             staged.elements(&self.facts, new.slot as usize * NODE_FACTS as usize, &none)?;
         }
         Ok(())
+    }
+
+    /// Stages the patch of a node, and its holes.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub fn stage_patch(
+        &self,
+        staged: &mut Staged,
+        config: &TerrainConfig,
+        new: NewNode,
+        holes: &[TerrainHole],
+    ) -> Result<(), Error> {
+        let mut patch = patch_of(config, self.grid, new);
+        if let Some(words) = hole_bits(config, self.grid, new.node, holes) {
+            let first = new.slot as usize * words.len();
+            staged.elements(&self.holes, first, &words)?;
+            patch.holes = first as u32 + 1;
+        }
+        Ok(staged.elements(&self.patches, new.slot as usize, &[patch])?)
     }
 
     /// Records the jobs of the frame; if `reads_facts`, also a copy of all facts to the host.
@@ -241,7 +285,30 @@ fn patch_of(config: &TerrainConfig, grid: Grid, NewNode { node, slot }: NewNode)
         uv: node.at.map(|at| (f64::from(at) * tiles).rem_euclid(f64::from(TILES_PERIOD)) as f32),
         window: slot,
         level: node.level,
+        holes: 0,
+        unused: 0,
     }
+}
+
+/// The bits of the vertices of a node that lie in holes; `None` for a node without holes. Only the finest nodes have holes.
+fn hole_bits(config: &TerrainConfig, grid: Grid, node: Node, holes: &[TerrainHole]) -> Option<Vec<u32>> {
+    let (size, scale) = (i64::from(grid.cells) + 1, config.terrain_scale);
+    let first = node.at.map(|at| i64::from(at) * i64::from(grid.cells));
+    let corner = first.map(|at| at as f64 * scale);
+    let edge = f64::from(grid.cells) * scale;
+    let near: Vec<&TerrainHole> =
+        holes.iter().filter(|hole| node.level == 0 && hole.reaches(corner, edge)).collect();
+    if near.is_empty() {
+        return None;
+    }
+    let mut words = vec![0; grid.hole_words()];
+    for bit in 0..size * size {
+        let sample = [first[0] + bit % size, first[1] + bit / size].map(|at| at as f64 * scale);
+        if near.iter().any(|hole| hole.contains(sample)) {
+            words[bit as usize / 32] |= 1 << (bit % 32);
+        }
+    }
+    Some(words)
 }
 
 /// Checks what endless terrain can be made of.
