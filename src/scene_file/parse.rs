@@ -11,6 +11,7 @@ use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
 use crate::scene::{EndlessLimits, TerrainHole};
+use crate::terrain::config::TerrainConfig;
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
@@ -99,7 +100,8 @@ impl SceneFile {
         }
         for entry in &self.objects {
             if entry.scatter.as_ref().is_some_and(|scatter| scatter.area.is_none()) {
-                let bound = "must be given unless terrain has patches: the corners [[x, z], [x, z]]";
+                let why = if self.terrain.is_some() { "terrain is endless" } else { "there is no terrain" };
+                let bound = format!("must be given where {why}: the corners [[x, z], [x, z]]");
                 return Err(InputError::new(format!("{}.scatter.area", entry.path), "missing", bound));
             }
             if self.terrain.is_some() {
@@ -120,7 +122,7 @@ impl SceneFile {
 fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
     let fields = at.fields(&["config", "patches", "target", "time", "endless", "view", "holes"])?;
     let recipe = terrain_recipe(&fields.need("config", "the configuration of `relievo terrain`")?)?;
-    if let Some(limits) = endless(&fields)? {
+    if let Some(limits) = endless(&fields, &recipe.config)? {
         let hole = |at: At<'_>| {
             let own = at.fields(&["at", "radius"])?;
             let hole = TerrainHole {
@@ -154,7 +156,7 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
 }
 
 /// The limits of endless terrain; `None` if it is a list of patches.
-fn endless(fields: &Fields<'_>) -> Result<Option<EndlessLimits>, InputError> {
+fn endless(fields: &Fields<'_>, config: &TerrainConfig) -> Result<Option<EndlessLimits>, InputError> {
     let is_endless = fields.maybe("endless", |at| at.flag())?.unwrap_or(false);
     let view_distance = fields.maybe("view", |at| at.number(1e-3, MOST_VIEW))?;
     if !is_endless {
@@ -168,6 +170,15 @@ fn endless(fields: &Fields<'_>) -> Result<Option<EndlessLimits>, InputError> {
         if let Some(given) = fields.get(name) {
             return Err(given.error("must not be given where terrain is endless"));
         }
+    }
+    let most = EndlessLimits::farthest(config);
+    if let (Some(at), Some(distance)) = (fields.get("view"), view_distance)
+        && distance > most
+    {
+        let bound = format!(
+            "must be at most {most}, one and a half spacings of the base lattice; raise coarseLevels for more"
+        );
+        return Err(at.error(bound));
     }
     Ok(Some(EndlessLimits { view_distance, ..EndlessLimits::default() }))
 }

@@ -5,6 +5,9 @@ use serde_json::Value;
 use crate::assert_refused;
 use crate::scene_file::{Folder, good};
 
+/// Endless terrain.
+const ENDLESS: &str = r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "good"}, "endless": true}"#;
+
 /// Endless terrain whose view is farther than its coarsest nodes reach.
 const ENDLESS_FAR: &str =
     r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "far"}, "endless": true, "view": 1000}"#;
@@ -61,7 +64,8 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     ("/terrain/view", "100", "terrain.endless = missing", "view distance"),
     ("/terrain/view", "0", "terrain.view = 0", "0.001..="),
     ("/terrain/holes", "[]", "terrain.endless = missing", "holes"),
-    ("/terrain", ENDLESS_FAR, "terrain.view_distance = 1000", "coarse_levels"),
+    ("/terrain", ENDLESS_FAR, "terrain.view = 1000", "coarseLevels"),
+    ("/terrain", ENDLESS, "meshes[1].scatter.area = missing", "terrain is endless"),
     ("/terrain", ENDLESS_HOLE, "terrain.holes[0].radius = 0", "0.001..="),
     ("/terrain/patches/1", "[600000, 0]", "terrain.patches[1] = 600000", "i32"),
     ("/meshes/0/instances/0/scale", "0", "meshes[0].instances[0].scale = 0", "1e-6"),

@@ -39,7 +39,10 @@ fn parts() -> Vec<(Option<ReliefMethod>, Specialization)> {
         })
     });
     let styles = [TerrainStyle::Textured, TerrainStyle::Wireframe];
-    meshes.chain(reliefs).chain(styles.map(|style| (None, Specialization::terrain(style)))).collect()
+    let grounds = styles
+        .into_iter()
+        .flat_map(|style| [false, true].map(|cut_out| Specialization::terrain(style, cut_out)));
+    meshes.chain(reliefs).chain(grounds.map(|ground| (None, ground))).collect()
 }
 
 fn formats() -> Vec<TargetFormat> {

@@ -82,9 +82,14 @@ impl Default for EndlessLimits {
 }
 
 impl EndlessLimits {
+    /// The largest view distance of a configuration.
+    pub(crate) fn farthest(config: &TerrainConfig) -> f64 {
+        1.5 * config.edge_length() * f64::from(1 << config.coarse_levels)
+    }
+
     /// Checks the limits, and returns the view distance.
     fn checked(&self, config: &TerrainConfig) -> Result<f64, InputError> {
-        let most = 1.5 * config.edge_length() * f64::from(1 << config.coarse_levels);
+        let most = Self::farthest(config);
         let distance = self.view_distance.unwrap_or(most);
         if !(distance > 0.0 && distance <= most) {
             let bound = format!(
