@@ -71,8 +71,7 @@ impl Scene {
     /// ```
     pub fn terrain_statistics(&self, terrain: ObjectId) -> Result<EndlessStatistics, InputError> {
         let endless = self.object_at(terrain)?.kind.downcast::<Endless>();
-        let refused = || InputError::new("terrain", "not endless", "must be made by TerrainSource::endless");
-        endless.map(Endless::statistics).ok_or_else(refused)
+        endless.map(Endless::statistics).ok_or_else(not_endless)
     }
 
     /// Replaces the holes of an endless terrain ([`TerrainSource::with_holes`](crate::scene::TerrainSource::with_holes)), from the next
@@ -95,8 +94,7 @@ impl Scene {
     /// ```
     pub fn set_terrain_holes(&mut self, terrain: ObjectId, holes: &[TerrainHole]) -> Result<(), InputError> {
         let endless = self.object_mut(terrain)?.kind.downcast_mut::<Endless>();
-        let refused = || InputError::new("terrain", "not endless", "must be made by TerrainSource::endless");
-        endless.ok_or_else(refused)?.set_holes(holes)
+        endless.ok_or_else(not_endless)?.set_holes(holes)
     }
 
     /// Sets which patches the fields of a terrain ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields))
@@ -233,6 +231,10 @@ fn terrain_of(kind: &dyn ObjectKind) -> Result<&Terrain, InputError> {
 fn terrain_of_mut(kind: &mut dyn ObjectKind) -> Result<&mut Terrain, InputError> {
     let refused = no_patches(kind);
     kind.downcast_mut().ok_or(refused)
+}
+
+fn not_endless() -> InputError {
+    InputError::new("terrain", "not endless", "must be made by TerrainSource::endless")
 }
 
 /// Why an object is not terrain of patches.

@@ -28,7 +28,8 @@ pub struct CharacterOptions<'a> {
     /// The caller's priority of bones, 0 to 1; all other bones have 0.5. A bone is given by its name, or by its index in digits.
     ///
     /// A bone of priority 1 is sampled in every frame that shows the instance, whatever the gate. Its own keyframes are then always
-    /// exact, and it stays in every reduced skeleton. Bones above it may still be skipped. [`BoneGate::SkipPeriod`] uses the other values as the sixth term of priorities.
+    /// exact, and it stays in every reduced skeleton. Bones above it may still be skipped. [`BoneGate::SkipPeriod`] uses the other
+    /// values as the sixth term of priorities.
     pub priorities: BTreeMap<&'a str, f32>,
     /// Reduced skeletons for distant instances, at most 3, each with fewer bones than the one before. Empty by default.
     ///

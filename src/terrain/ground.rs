@@ -70,6 +70,12 @@ impl Ground {
         Ok(())
     }
 
+    /// Whether the ground has a patch.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn contains(&self, patch: [i32; 2]) -> bool {
+        self.patches.contains_key(&patch)
+    }
+
     /// Removes a patch. Returns whether the ground had that patch.
     pub fn remove(&mut self, patch: [i32; 2]) -> bool {
         self.patches.remove(&patch).is_some()

@@ -246,15 +246,7 @@ impl HeightJob {
     ///
     /// # Errors
     /// [`InputError`] for too many regions or regions out of bounds; [`GpuError::Limit`] for more features than the capacity.
-    pub fn set_regions(&self, gpu: &Gpu, firsts: &[[i64; 2]], features: &Features) -> Result<(), Error> {
-        self.stage_regions(&mut &*gpu, firsts, features)
-    }
-
-    /// The same as [`HeightJob::set_regions`] with writes of any kind, such as staged ones.
-    ///
-    /// # Errors
-    /// Those of [`HeightJob::set_regions`].
-    pub(crate) fn stage_regions(
+    pub(crate) fn set_regions(
         &self,
         to: &mut impl Upload,
         firsts: &[[i64; 2]],

@@ -19,7 +19,7 @@ pub struct Node {
 /// The sides of a node, in the order of [`Leaf::sides`].
 pub const SIDES: [[i32; 2]; 4] = [[-1, 0], [1, 0], [0, -1], [0, 1]];
 
-/// What lies beyond a side of a node that is drawn.
+/// The neighbour beyond a side of a node that is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Beside {
     /// Nothing: the terrain ends there.
@@ -37,7 +37,7 @@ pub enum Beside {
 pub struct Leaf {
     /// The node.
     pub node: Node,
-    /// What lies beside it: west, east, north, south.
+    /// The neighbours: west, east, north, south.
     pub sides: [Beside; 4],
 }
 

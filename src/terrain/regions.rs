@@ -124,18 +124,14 @@ impl RegionJob {
         }
     }
 
-    /// Sets the regions, by their first samples, and features for the next recordings; see [`HeightJob::set_regions`].
+    /// Sets the regions, by their first samples, and features for the next recordings
+    /// ([`Region::first`](crate::ops::terrain::window::Region::first)). The number of regions must not exceed the prepared count.
     ///
     /// # Errors
-    /// As [`HeightJob::set_regions`]; [`InputError`] for features with noise.
+    /// [`InputError`] for too many regions or regions out of bounds, and for features with noise; [`crate::gpu::GpuError::Limit`] for
+    /// more features than the capacity.
     pub fn set_regions(&self, gpu: &Gpu, firsts: &[[i64; 2]], features: &Features) -> Result<(), Error> {
-        match &self.0 {
-            Prepared::Levels(job) => job.set_regions(gpu, firsts, features),
-            Prepared::Noise(job) => {
-                without(features)?;
-                job.set_regions(gpu, firsts)
-            }
-        }
+        self.stage_regions(&mut &*gpu, firsts, features)
     }
 
     /// The same as [`RegionJob::set_regions`] with writes of any kind, such as staged ones.
@@ -149,10 +145,10 @@ impl RegionJob {
         features: &Features,
     ) -> Result<(), Error> {
         match &self.0 {
-            Prepared::Levels(job) => job.stage_regions(to, firsts, features),
+            Prepared::Levels(job) => job.set_regions(to, firsts, features),
             Prepared::Noise(job) => {
                 without(features)?;
-                job.stage_regions(to, firsts)
+                job.set_regions(to, firsts)
             }
         }
     }

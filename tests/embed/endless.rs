@@ -80,13 +80,23 @@ impl World {
     fn positions(&mut self, camera: &Camera) -> Vec<Option<DVec3>> {
         let Self { gpu, scene, view, raw, measure, .. } = self;
         raw.frame(scene, view, measure, &[Layer::Measure]);
-        let corner = Placement { cell: camera.cell, ..Placement::default() }.world();
-        let place = |texel: [f32; 4]| {
-            let [x, y, z, w] = texel.map(f64::from);
-            (w == 1.0).then(|| corner + DVec3::new(x, y, z))
-        };
-        raw.floats(gpu, 0).into_iter().map(place).collect()
+        read_positions(raw, gpu, camera)
     }
+}
+
+/// The corner of a camera's cell in the world.
+fn corner(camera: &Camera) -> DVec3 {
+    Placement { cell: camera.cell, ..Placement::default() }.world()
+}
+
+/// The world positions in a target of measures; `None` where the sky is.
+fn read_positions(raw: &Raw, gpu: &Gpu, camera: &Camera) -> Vec<Option<DVec3>> {
+    let corner = corner(camera);
+    let place = |texel: [f32; 4]| {
+        let [x, y, z, w] = texel.map(f64::from);
+        (w == 1.0).then(|| corner + DVec3::new(x, y, z))
+    };
+    raw.floats(gpu, 0).into_iter().map(place).collect()
 }
 
 /// The height of the finest triangles at a world position, computed from the definition alone.
@@ -103,7 +113,7 @@ fn truth(config: &TerrainConfig, x: f64, z: f64) -> f64 {
 
 /// Where a camera draws a world position, in pixels.
 fn pixel(camera: &Camera, at: DVec3) -> DVec2 {
-    let corner = Placement { cell: camera.cell, ..Placement::default() }.world();
+    let corner = corner(camera);
     let clip = DMat4::from_cols_array(&camera.clip_from_view.to_cols_array().map(f64::from))
         * DMat4::from_cols_array(&camera.view_from_cell.to_cols_array().map(f64::from));
     let point = clip * (at - corner).extend(1.0);
@@ -150,7 +160,7 @@ fn holes(world: &World, camera: &Camera, drawn: &[Option<DVec3>]) -> usize {
     suspects.filter(|pixel| is_hole(*pixel)).count()
 }
 
-/// What a flight shows.
+/// The measurements of a flight.
 #[derive(Debug, Default)]
 struct Flight {
     holes: usize,
@@ -448,11 +458,7 @@ fn views_far_apart_and_a_shadow_have_their_own_detail() {
             Ok(())
         });
         frame.expect("recorded");
-        let corner = Placement { cell: camera.cell, ..Placement::default() }.world();
-        let place = |texel: [f32; 4]| {
-            (texel[3] == 1.0).then(|| corner + DVec3::new(texel[0].into(), texel[1].into(), texel[2].into()))
-        };
-        let drawn: Vec<Option<DVec3>> = raw.floats(gpu, 0).into_iter().map(place).collect();
+        let drawn = read_positions(raw, gpu, &camera);
         assert_eq!(holes(&world, &camera, &drawn), 0);
         let most = largest(&offsets(&config, &camera, &some(&drawn, 7)));
         assert!(most <= 1.0 + ROUNDING && most > 0.01, "{most}");

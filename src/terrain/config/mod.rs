@@ -337,13 +337,6 @@ impl TerrainConfig {
         Ok(())
     }
 
-    /// Bound of all heights without features, in world units.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn most_height(&self) -> f64 {
-        let ranges: f64 = (0..self.levels()).map(|level| 2.0 * self.range(level)).sum();
-        (self.range(0) + ranges).min(HEIGHT_LIMIT as f64) / HEIGHT_ONE
-    }
-
     /// Exponent n, where `patch_size` = 2^n + 1.
     pub(crate) fn exponent(&self) -> u32 {
         (self.patch_size - 1).ilog2()

@@ -124,15 +124,7 @@ impl NoiseJob {
     ///
     /// # Errors
     /// [`InputError`] for too many regions or regions out of bounds; [`GpuError`].
-    pub fn set_regions(&self, gpu: &Gpu, firsts: &[[i64; 2]]) -> Result<(), Error> {
-        self.stage_regions(&mut &*gpu, firsts)
-    }
-
-    /// The same as [`NoiseJob::set_regions`] with writes of any kind, such as staged ones.
-    ///
-    /// # Errors
-    /// Those of [`NoiseJob::set_regions`].
-    pub(crate) fn stage_regions(&self, to: &mut impl Upload, firsts: &[[i64; 2]]) -> Result<(), Error> {
+    pub(crate) fn set_regions(&self, to: &mut impl Upload, firsts: &[[i64; 2]]) -> Result<(), Error> {
         self.check_count("firsts.len", firsts.len())?;
         let Regions { width, coarser, .. } = self.regions;
         let region = |first: &[i64; 2]| Region { first: *first, width, coarser };

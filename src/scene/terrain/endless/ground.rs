@@ -130,7 +130,7 @@ impl FinestGround {
     /// The patches, with `patch` among them; `None` for a patch beyond the world.
     fn with(&self, patch: [i32; 2]) -> Result<Option<MutexGuard<'_, Patches>>, InputError> {
         let mut patches = self.patches.lock().unwrap_or_else(PoisonError::into_inner);
-        if !patches.order.contains(&patch) {
+        if !patches.ground.contains(patch) {
             let first = patch.map(|index| i64::from(index) * (i64::from(SIZE) - 1));
             let samples = Region { first, width: self.patch.patch_size, coarser: 0 };
             let config = &self.recipe.config;

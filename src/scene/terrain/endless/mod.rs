@@ -31,7 +31,7 @@ use crate::scene::ray::SurfaceHit;
 use crate::shared::lod::object::{OBJECT_LEVELS, SceneDraw};
 use crate::shared::render::scene_terrain::{MORPH_START, STITCHED, TerrainNode, TerrainParams};
 use crate::skinning::bounding_sphere::BoundingSphere;
-use crate::terrain::config::{HEIGHT_ONE, TerrainConfig};
+use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::cover::planes;
 use crate::terrain::materials::Materials;
 use crate::terrain::mesh::GroundPoint;
@@ -193,7 +193,7 @@ struct Resident {
     facts: Option<Facts>,
 }
 
-/// What is known of a node, in world units.
+/// Facts about a node on the host, in world units.
 #[derive(Debug, Clone, Copy)]
 struct Facts {
     /// The lowest and the highest height of its finer heights.
@@ -319,9 +319,8 @@ impl Endless {
     /// The lowest and the highest corner of a node's box in world units. A node whose facts are unknown has those of the node that
     /// covers it, or the bound of all heights.
     fn node_box(&self, node: Node) -> [DVec3; 2] {
-        let known =
-            (node.level..=self.grid.top).find_map(|level| self.residents.get(&node.ancestor(level))?.facts);
-        let most = self.config().most_height();
+        let known = (node.level..=self.grid.top).find_map(|level| self.facts(node.ancestor(level)));
+        let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
         let [low, high] = known.map_or([-most, most], |facts| facts.heights);
         let edge = self.edge(node.level);
         let [x, z] = node.at.map(|at| f64::from(at) * edge);
@@ -338,14 +337,10 @@ impl Endless {
         Ok((placement, BoundingSphere { center: Vec3::new(0.0, middle.y as f32, 0.0), radius }))
     }
 
-    /// The coarsest nodes within the view distance of the eyes of views.
-    fn roots(&self, views: &[SelectView]) -> BTreeSet<Node> {
+    /// The coarsest nodes within the view distance of some eyes.
+    fn roots(&self, eyes: &[DVec3]) -> BTreeSet<Node> {
         let (level, mut roots) = (self.grid.top, BTreeSet::new());
         let edge = self.edge(level);
-        let eyes = views.iter().flat_map(|view| {
-            let corner = Placement::corner(view.cell.into());
-            view.cameras().iter().map(move |camera| corner + camera.eye.as_dvec3())
-        });
         for eye in eyes {
             let range = |at: f64| {
                 let end = |sign: f64| ((at + sign * self.view_distance) / edge).floor() as i32;
@@ -364,12 +359,19 @@ impl Endless {
         roots
     }
 
+    /// The facts of a node that has arrived from the device.
+    fn facts(&self, node: Node) -> Option<Facts> {
+        self.residents.get(&node)?.facts
+    }
+
+    /// The error of a node in world units, with the holes that it lacks.
+    fn error(&self, node: Node) -> Option<f32> {
+        Some(self.facts(node)?.error.max(self.hole_error(node)))
+    }
+
     /// Whether a node's error exceeds the displacement that a view allows. `fraction` is the part of the displacement that counts.
     fn is_beyond(&self, view: &SelectView, fraction: f32, node: Node) -> bool {
-        let Some(Facts { error, .. }) = self.residents.get(&node).and_then(|resident| resident.facts) else {
-            return false;
-        };
-        let error = error.max(self.hole_error(node));
+        let Some(error) = self.error(node) else { return false };
         let [low, high] = self.node_box(node).map(|at| at - Placement::corner(view.cell.into()));
         // A sphere around parts of the node allows more than one around the whole node.
         let allows = |parts: u32| {
@@ -472,12 +474,11 @@ impl Endless {
     /// The limit of a node's vertices: the displacement at which the next coarser level is allowed, or more if the node itself is
     /// nearly as far off.
     fn limit(&self, node: Node) -> f32 {
-        let facts = |node: Node| self.residents.get(&node).and_then(|resident| resident.facts);
-        let error = |node: Node| facts(node).map(|facts| facts.error.max(self.hole_error(node)));
         if node.level == self.grid.top {
             return f32::MAX;
         }
-        error(node.parent()).unwrap_or(f32::MAX).max(error(node).unwrap_or(0.0) / MORPH_START)
+        let coarser = self.error(node.parent()).unwrap_or(f32::MAX);
+        coarser.max(self.error(node).unwrap_or(0.0) / MORPH_START)
     }
 
     /// How a view draws its nodes.
@@ -502,12 +503,18 @@ impl Endless {
     }
 
     /// Chooses what the views of a frame draw, and what the frame makes. Returns the instances that are placed anew.
-    fn choose(&mut self, views: &[SelectView], fraction: f32) -> Result<Vec<Node>, Error> {
+    fn choose(&mut self, views: &[SelectView], fraction: f32) -> Vec<Node> {
         let views = &views.iter().map(with_pixels).collect::<Vec<_>>()[..];
         self.frame += 1;
         self.new.clear();
         let mut moved = self.arrive();
-        let roots = self.roots(views);
+        let eyes: Vec<DVec3> = (views.iter())
+            .flat_map(|view| {
+                let corner = Placement::corner(view.cell.into());
+                view.cameras().iter().map(move |camera| corner + camera.eye.as_dvec3())
+            })
+            .collect();
+        let roots = self.roots(&eyes);
         self.statistics.refused = 0;
         for root in &roots {
             match self.residents.get_mut(root) {
@@ -539,10 +546,7 @@ impl Endless {
                 }
             }
             // A node without facts may have to be refined.
-            let is_unknown = |leaf: &&Leaf| {
-                let facts = self.residents.get(&leaf.node).and_then(|resident| resident.facts);
-                leaf.node.level > 0 && facts.is_none()
-            };
+            let is_unknown = |leaf: &&Leaf| leaf.node.level > 0 && self.facts(leaf.node).is_none();
             unknown += cover.leaves.iter().filter(is_unknown).count();
             for leaf in &cover.leaves {
                 levels[leaf.node.level as usize] += 1;
@@ -551,13 +555,6 @@ impl Endless {
             missing.extend(cover.missing);
             soon.extend(near);
         }
-        let eyes: Vec<DVec3> = (views.iter())
-            .flat_map(|view| {
-                view.cameras()
-                    .iter()
-                    .map(|camera: &LodCamera| Placement::corner(view.cell.into()) + camera.eye.as_dvec3())
-            })
-            .collect();
         missing.sort_unstable();
         missing.dedup();
         self.retune(missing.len());
@@ -574,7 +571,7 @@ impl Endless {
             ready: if open == 0 { 1.0 } else { (split as f32 / (split + open) as f32).min(0.999) },
             ..self.statistics
         };
-        Ok(moved)
+        moved
     }
 
     /// Makes levels coarser while the nodes that are needed exceed the memory, and finer again when there is room.
@@ -698,7 +695,7 @@ impl ObjectKind for Endless {
     ) -> Result<Provided, Error> {
         let asked = seen.views.iter().flat_map(SelectView::cameras).map(|camera| camera.pixels);
         self.is_bounded = asked.fold(f32::INFINITY, f32::min) >= LEAST_PIXELS;
-        let moved = self.choose(seen.views, seen.object.metric_scale * self.lod_bias)?;
+        let moved = self.choose(seen.views, seen.object.metric_scale * self.lod_bias);
         self.pool.make(gpu, &self.recipe.config, &self.new)?;
         let placed = moved.into_iter().filter_map(|node| Some((node, self.residents.get(&node)?.slot)));
         let placed = placed.map(|(node, slot)| {
@@ -727,8 +724,9 @@ impl ObjectKind for Endless {
 
     /// The first hit of a ray on the finest ground. The coarsest nodes answer for all others.
     fn hit(&self, instance: &Placed, ray: &UnitRay) -> Result<Option<SurfaceHit>, InputError> {
-        let own = self.residents.iter().find(|(_, resident)| resident.slot == instance.index);
-        let Some((node, _)) = own.filter(|(node, _)| node.level == self.grid.top) else {
+        // The coarsest nodes come last in the order of nodes.
+        let mut roots = self.residents.iter().rev().take_while(|(node, _)| node.level == self.grid.top);
+        let Some((node, _)) = roots.find(|(_, resident)| resident.slot == instance.index) else {
             return Ok(None);
         };
         let (origin, holes) = (Placement::corner(instance.cell) + ray.origin, self.holes.as_deref());

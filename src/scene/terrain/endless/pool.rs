@@ -180,7 +180,7 @@ impl Pool {
         Ok(self.ring.invalidate(gpu)?)
     }
 
-    /// Prepares the jobs that make nodes in this frame, and stages what they read.
+    /// Prepares the jobs that make nodes in this frame.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
