@@ -28,7 +28,7 @@ struct NodeParams {
 @group(0) @binding(0) var<uniform> params: NodeParams;
 // Heights of the regions, one after the other, row by row, in 1/65536 world units.
 @group(0) @binding(1) var<storage, read> heights: array<i32>;
-// Index of each region's tile; tiles beyond the end of `tiles` are not written.
+// Index of each region's tile and facts; those beyond the end of `tiles` or of `facts` are not written.
 @group(0) @binding(2) var<storage, read> slots: array<u32>;
 // Out: the tiles, one after the other: (`size` + 2 · `NODE_MARGIN`)² heights each.
 @group(0) @binding(3) var<storage, read_write> tiles: array<i32>;
@@ -170,7 +170,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     if id.x < params.width && id.y < params.width && is_there {
         let step = 1u << params.finer;
         let own = height_at(id.z, id.x, id.y);
-        if (id.x | id.y) % step == 0u {
+        if (id.x | id.y) % step == 0u && slot < arrayLength(&tiles) / (tile_width * tile_width) {
             tiles[(slot * tile_width + id.y / step) * tile_width + id.x / step] = own;
         }
         let first = NODE_MARGIN * step;

@@ -7,6 +7,7 @@ use crate::scene::object::Object;
 use crate::scene::object_kind::ObjectKind;
 use crate::scene::terrain::endless::Endless;
 use crate::scene::terrain::{EndlessStatistics, Terrain, TerrainDrawable, TerrainHole, listed};
+use crate::terrain::features::Features as TerrainFeatures;
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
 use crate::{Error, InputError};
@@ -95,6 +96,37 @@ impl Scene {
     pub fn set_terrain_holes(&mut self, terrain: ObjectId, holes: &[TerrainHole]) -> Result<(), InputError> {
         let endless = self.object_mut(terrain)?.kind.downcast_mut::<Endless>();
         endless.ok_or_else(not_endless)?.set_holes(holes)
+    }
+
+    /// Replaces the heights that are injected into an endless terrain, such as those of roads and valleys, from the next frame on. The
+    /// nodes that they change are made again: all at once if they are at most [`EndlessLimits::nodes_per_frame`], and otherwise coarsest
+    /// first. [`Scene::ground`] and [`Scene::pick`] answer for the new heights at once.
+    ///
+    /// [`EndlessLimits::nodes_per_frame`]: crate::scene::EndlessLimits::nodes_per_frame
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not in this scene or is not endless terrain, for terrain with an elevation map or of noise,
+    /// and for heights out of bounds.
+    ///
+    /// # Examples
+    ///
+    /// A dip of three metres at a sample of patch (0, 0).
+    ///
+    /// ```no_run
+    /// # use relievo::scene::{FeatureFile, FeatureMode, ObjectId, Scene, TerrainConfig, TerrainFeatures};
+    /// # fn example(scene: &mut Scene, land: ObjectId, config: &TerrainConfig) -> Result<(), relievo::Error> {
+    /// let dip = FeatureFile { patch_coordinates: [0, 0], precomputed_heights: vec![20.0, 31.0, -3.0] };
+    /// scene.set_terrain_features(land, &TerrainFeatures::new(config, &[dip], FeatureMode::Additive)?)?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn set_terrain_features(
+        &mut self,
+        terrain: ObjectId,
+        features: &TerrainFeatures,
+    ) -> Result<(), InputError> {
+        let endless = self.object_mut(terrain)?.kind.downcast_mut::<Endless>();
+        endless.ok_or_else(not_endless)?.set_features(features)
     }
 
     /// Sets which patches the fields of a terrain ([`TerrainSource::from_fields`](crate::scene::TerrainSource::from_fields))

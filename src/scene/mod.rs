@@ -83,6 +83,9 @@ pub use crate::surface::{
     ReliefShadow, SurfaceMesh, SurfaceTextures, SurfaceVertex,
 };
 #[doc(inline)]
+#[cfg(not(target_arch = "wasm32"))]
+pub use crate::terrain::elevation::ElevationLoader;
+#[doc(inline)]
 pub use crate::terrain::{
     blend::{Shading as TerrainShading, WeightMode},
     config::{
@@ -90,6 +93,10 @@ pub use crate::terrain::{
         Offset as TerrainOffset, Slope as TerrainSlope, TerrainConfig, Zone as TerrainZone, ZoneTexture,
     },
     despike::Despike,
+    elevation::{
+        ElevationInfo, ElevationLayout, ElevationMap, ElevationSource, ElevationTile, ElevationTiles,
+        TileNumber,
+    },
     features::{FeatureFile, Features as TerrainFeatures},
     fields::Fields as TerrainFields,
     fixed::FeatureMode,

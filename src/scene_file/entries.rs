@@ -9,6 +9,7 @@ use crate::animation::Wrap;
 use crate::scene::{EndlessLimits, LevelOfDetail, TerrainHole, Transition};
 use crate::surface::ReliefShadow;
 use crate::surface::relief::ReliefMethod;
+use crate::terrain::fixed::FeatureMode;
 use crate::terrain::morph::Morph;
 use crate::terrain::recipe::Recipe;
 
@@ -23,6 +24,23 @@ pub(super) struct TerrainEntry {
     pub endless: Option<EndlessLimits>,
     /// Holes of endless terrain.
     pub holes: Option<Vec<TerrainHole>>,
+    /// The elevation map of endless terrain.
+    pub elevation: Option<ElevationEntry>,
+    /// Files of injected heights, and how these are injected.
+    pub features: Vec<PathBuf>,
+    pub feature_mode: FeatureMode,
+}
+
+/// An elevation map: an image, and where it lies.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ElevationEntry {
+    pub file: PathBuf,
+    /// The heights that black and white stand for.
+    pub range: [f32; 2],
+    /// Column and row of the first sample, in samples of the map.
+    pub first: [i32; 2],
+    pub spacing: u32,
+    pub margin: u32,
 }
 
 /// An entry of `meshes` or `characters`: a model with its instances.

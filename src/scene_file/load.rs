@@ -8,7 +8,9 @@ use std::sync::Arc;
 use image::{DynamicImage, Rgba, RgbaImage};
 
 use super::builtin::BuiltIns;
-use super::entries::{EntryKind, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Source};
+use super::entries::{
+    ElevationEntry, EntryKind, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Source, TerrainEntry,
+};
 use super::spec::SceneFile;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::Error;
@@ -17,6 +19,8 @@ use crate::scene::Relief;
 use crate::skinning::{Examined, add_levels, add_levels_and_at_rest, at_rest, join_levels_in, poses_of};
 use crate::surface::{Green, HeightMap, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceVertex};
 use crate::terrain::config::ZoneTexture;
+use crate::terrain::elevation::{ElevationLayout, ElevationMap, ElevationTiles};
+use crate::terrain::features::{FeatureFile, Features};
 use crate::terrain::texture::TerrainTexture;
 use crate::{InputError, srgb};
 
@@ -35,6 +39,10 @@ pub struct LoadedScene {
     pub(super) objects: Vec<Loaded>,
     /// The textures of the terrain's zones.
     pub(super) textures: Vec<TerrainTexture>,
+    /// The elevation map of endless terrain.
+    pub(super) elevation: Option<Arc<ElevationTiles>>,
+    /// The injected heights of the terrain.
+    pub(super) features: Features,
 }
 
 /// The loaded model or relief of an object.
@@ -93,8 +101,11 @@ impl SceneFile {
             }
         };
         let textures = zones.map(texture).collect::<Result<_, InputError>>()?;
+        let elevation = self.terrain.as_ref().map(|terrain| files.elevation(terrain)).transpose()?.flatten();
+        let features = self.terrain.as_ref().map(|terrain| files.features(terrain)).transpose()?;
+        let features = features.unwrap_or_default();
         let objects = files.objects(&self.objects)?;
-        Ok(LoadedScene { file: self.clone(), objects, textures })
+        Ok(LoadedScene { file: self.clone(), objects, textures, elevation, features })
     }
 }
 
@@ -129,6 +140,34 @@ impl<'a> Files<'a> {
     fn new(read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>, built_ins: &'a dyn BuiltIns) -> Self {
         let (models, needs, levelled) = Default::default();
         Self { read, built_ins, models, needs, levelled }
+    }
+
+    /// The elevation map of a terrain.
+    fn elevation(&self, terrain: &TerrainEntry) -> Result<Option<Arc<ElevationTiles>>, InputError> {
+        let Some(entry) = &terrain.elevation else { return Ok(None) };
+        let image = self.decoded("terrain.elevation.file", &entry.file)?;
+        let map = ElevationMap::of_brightness(image, entry.range);
+        let ElevationEntry { first, spacing, margin, .. } = *entry;
+        let layout = ElevationLayout { first, spacing, ..map.layout };
+        let tiles = ElevationTiles::new(&terrain.recipe.config, &ElevationMap { layout, margin, ..map });
+        Ok(Some(Arc::new(tiles.map_err(|error| error.below("terrain.elevation"))?)))
+    }
+
+    /// The injected heights of a terrain.
+    fn features(&self, terrain: &TerrainEntry) -> Result<Features, InputError> {
+        let config = &terrain.recipe.config;
+        let mut features = Features::new(config, &[], terrain.feature_mode)?;
+        for (index, file) in terrain.features.iter().enumerate() {
+            let path = format!("terrain.features[{index}]");
+            let bytes = self.bytes(&path, file)?;
+            let text = str::from_utf8(&bytes)
+                .map_err(|error| InputError::new(&path, file.display(), format!("must be text: {error}")))?;
+            let added = FeatureFile::from_json(text)
+                .and_then(|points| features.add(config, &points))
+                .and_then(|()| features.check(config));
+            added.map_err(|error| InputError::new(&path, file.display(), error.in_json().to_string()))?;
+        }
+        Ok(features)
     }
 
     fn objects(&mut self, entries: &[ObjectEntry]) -> Result<Vec<Loaded>, InputError> {
@@ -461,6 +500,44 @@ mod tests {
         assert!(models[2].clips.is_empty() && !models[3].clips.is_empty());
         assert_eq!(errors(&models[2]), errors(&models[3]));
         assert_eq!((shown(&models[2]), shown(&models[3])), (vec![creature; 2], vec![creature; 2]));
+    }
+
+    /// Files of terrain: an elevation map, and injected heights.
+    #[test]
+    fn terrain_has_maps_and_injected_heights() {
+        let read = |name: &Path| match name.to_str() {
+            Some("map.png") => {
+                let mut bytes = Cursor::new(Vec::new());
+                let image = image::ImageBuffer::from_fn(12, 9, |x, y| image::Luma([(x * 5_000 + y) as u16]));
+                let written = DynamicImage::ImageLuma16(image).write_to(&mut bytes, image::ImageFormat::Png);
+                written.map_err(std::io::Error::other).map(|()| bytes.into_inner())
+            }
+            Some("road.json") => {
+                Ok(br#"{"patchCoordinates": [1, 0], "precomputedHeights": [3, 4, 2.5, 5, 6, -1]}"#.to_vec())
+            }
+            Some("bad.json") => Ok(br#"{"patchCoordinates": [1, 0], "precomputedHeights": [3, 4]}"#.to_vec()),
+            _ => Err(std::io::ErrorKind::NotFound.into()),
+        };
+        let loaded = |terrain: &str| {
+            let config = r#""config": {"patchSize": 65, "scaleFactor": 9, "seed": "s", "coarseLevels": 2}"#;
+            let file = scene(&format!(r#""terrain": {{{config}, {terrain}}}"#))?;
+            let files = file.files();
+            Ok::<_, InputError>((file.load(&read, &NoBuiltIns)?, files))
+        };
+        let map = r#""elevation": {"file": "map.png", "range": [-5, 25], "first": [-3, 2], "spacing": 4, "margin": 1}"#;
+        let (scene, files) = loaded(&format!(r#""endless": true, {map}"#)).expect("loaded");
+        assert_eq!(files, [Path::new("map.png")]);
+        let info = crate::terrain::elevation::ElevationSource::info(&*scene.elevation.expect("a map"));
+        assert_eq!(info.layout, ElevationLayout { spacing: 4, first: [-3, 2], size: [12, 9] });
+        for terrain in [r#""features": ["road.json"]"#, r#""endless": true, "features": ["road.json"]"#] {
+            let (scene, files) = loaded(&format!(r#"{terrain}, "featureMode": "additive""#)).expect("loaded");
+            assert_eq!((scene.features.len(), files), (2, vec![Path::new("road.json").to_path_buf()]));
+        }
+        let refused = |terrain: &str| loaded(terrain).map(|_| ()).expect_err(terrain).to_string();
+        let error = refused(r#""features": ["road.json", "bad.json"]"#);
+        assert!(error.starts_with("terrain.features[1] = bad.json: precomputedHeights"), "{error}");
+        let error = refused(&format!(r#""endless": true, {}"#, map.replace("1}", "5}")));
+        assert!(error.starts_with("terrain.elevation.margin = 5"), "{error}");
     }
 
     #[test]

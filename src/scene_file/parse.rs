@@ -1,9 +1,11 @@
 //! Reads a scene file: terrain, light, camera, quality, and the lists of objects.
 
+use std::path::PathBuf;
+
 use glam::{DVec3, Vec3};
 
 use super::camera::{CameraKey, CameraPath, FIELDS_OF_VIEW};
-use super::entries::{ObjectEntry, Spot, TerrainEntry};
+use super::entries::{ElevationEntry, ObjectEntry, Spot, TerrainEntry};
 use super::json::{At, COORDINATE, Fields, Json};
 use super::parse_lod::quality;
 use super::parse_object::{character, mesh};
@@ -11,7 +13,8 @@ use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
 use crate::scene::{EndlessLimits, TerrainHole};
-use crate::terrain::config::TerrainConfig;
+use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
+use crate::terrain::fixed::FeatureMode;
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
 
@@ -39,6 +42,12 @@ const BACKGROUND: [f32; 3] = [0.36, 0.55, 0.80];
 
 /// The largest view distance in world units.
 const MOST_VIEW: f64 = 1e9;
+
+/// The largest number of files of injected heights.
+const MOST_FILES: usize = 4096;
+
+/// The largest column and row of an elevation map.
+const MOST_SAMPLE: i64 = i32::MAX as i64;
 
 /// The largest number of holes.
 const MOST_HOLES: usize = 1024;
@@ -120,8 +129,25 @@ impl SceneFile {
 }
 
 fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
-    let fields = at.fields(&["config", "patches", "target", "time", "endless", "view", "holes"])?;
+    let known = [
+        "config",
+        "patches",
+        "target",
+        "time",
+        "endless",
+        "view",
+        "holes",
+        "elevation",
+        "features",
+        "featureMode",
+    ];
+    let fields = at.fields(&known)?;
     let recipe = terrain_recipe(&fields.need("config", "the configuration of `relievo terrain`")?)?;
+    let name = |at: &At<'_>| at.text().map(PathBuf::from);
+    let features = fields.maybe("features", |at| at.list(1, MOST_FILES)?.iter().map(name).collect())?;
+    let features: Vec<PathBuf> = features.unwrap_or_default();
+    let modes = [("keep", FeatureMode::Keep), ("additive", FeatureMode::Additive)];
+    let feature_mode = fields.one_of("featureMode", modes, FeatureMode::Keep)?;
     if let Some(limits) = endless(&fields, &recipe.config)? {
         let hole = |at: At<'_>| {
             let own = at.fields(&["at", "radius"])?;
@@ -132,7 +158,19 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
             Ok::<_, InputError>(hole)
         };
         let holes = fields.maybe("holes", |at| at.list(0, MOST_HOLES)?.into_iter().map(hole).collect())?;
-        return Ok(TerrainEntry { recipe, patches: Vec::new(), target: None, endless: Some(limits), holes });
+        let elevation = fields.maybe("elevation", |at| elevation(&at))?;
+        let (patches, endless) = (Vec::new(), Some(limits));
+        let target = None;
+        return Ok(TerrainEntry {
+            recipe,
+            patches,
+            target,
+            endless,
+            holes,
+            elevation,
+            features,
+            feature_mode,
+        });
     }
     let patches = match fields.get("patches") {
         Some(list) => list.list(1, MAX_PATCHES)?.iter().map(patch).collect::<Result<Vec<_>, _>>()?,
@@ -152,7 +190,28 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         return Err(InputError::new(format!("{path}.len"), patches.len(), bound));
     }
     let target = target(&fields, &recipe, &patches)?;
-    Ok(TerrainEntry { recipe, patches, target, endless: None, holes: None })
+    let (endless, holes, elevation) = (None, None, None);
+    Ok(TerrainEntry { recipe, patches, target, endless, holes, elevation, features, feature_mode })
+}
+
+fn elevation(at: &At<'_>) -> Result<ElevationEntry, InputError> {
+    let fields = at.fields(&["file", "range", "first", "spacing", "margin"])?;
+    let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
+    let whole = |name: &str, least: i64, most: i64, otherwise: i64| {
+        Ok::<_, InputError>(fields.maybe(name, |at| at.whole(least, most))?.unwrap_or(otherwise))
+    };
+    let first = fields.maybe("first", |at| {
+        let both = at.list(2, 2)?;
+        Ok([both[0].whole(-MOST_SAMPLE, MOST_SAMPLE)?, both[1].whole(-MOST_SAMPLE, MOST_SAMPLE)?])
+    })?;
+    let range = fields.need("range", "the heights of black and white")?.numbers::<2>(-most, most)?;
+    Ok(ElevationEntry {
+        file: fields.need("file", "an image of 16-bit grey")?.text()?.into(),
+        range: range.map(|height| height as f32),
+        first: first.unwrap_or_default().map(|at| at as i32),
+        spacing: whole("spacing", 1, 1 << 20, 1)? as u32,
+        margin: whole("margin", 0, 1 << 20, 0)? as u32,
+    })
 }
 
 /// The limits of endless terrain; `None` if it is a list of patches.
@@ -160,8 +219,12 @@ fn endless(fields: &Fields<'_>, config: &TerrainConfig) -> Result<Option<Endless
     let is_endless = fields.maybe("endless", |at| at.flag())?.unwrap_or(false);
     let view_distance = fields.maybe("view", |at| at.number(1e-3, MOST_VIEW))?;
     if !is_endless {
-        if fields.get("holes").is_some() {
-            return Err(fields.missing("endless", "true, since holes are given"));
+        for (name, why) in
+            [("holes", "true, since holes are given"), ("elevation", "true, since an elevation map is given")]
+        {
+            if fields.get(name).is_some() {
+                return Err(fields.missing("endless", why));
+            }
         }
         let missing = |_| Err(fields.missing("endless", "true, since a view distance is given"));
         return view_distance.map_or(Ok(None), missing);
@@ -176,7 +239,7 @@ fn endless(fields: &Fields<'_>, config: &TerrainConfig) -> Result<Option<Endless
         && distance > most
     {
         let bound = format!(
-            "must be at most {most}, one and a half spacings of the base lattice; raise coarseLevels for more"
+            "must be at most {most}, eight spacings of the base lattice; raise coarseLevels for more"
         );
         return Err(at.error(bound));
     }

@@ -69,6 +69,9 @@ impl SceneFile {
                 relief.albedo.iter().chain(&relief.normals).for_each(&mut add);
             }
         }
+        found.extend(self.terrain.iter().flat_map(|terrain| terrain.features.clone()));
+        let elevation = self.terrain.iter().filter_map(|terrain| terrain.elevation.as_ref());
+        found.extend(elevation.map(|elevation| elevation.file.clone()));
         let zones = self.terrain.iter().flat_map(|terrain| &terrain.recipe.config.zones);
         found.extend(zones.filter_map(|zone| match &zone.texture {
             Some(ZoneTexture::File(path)) => Some(path.clone()),

@@ -13,6 +13,7 @@ use super::spec::SunOptions;
 use crate::asset::Model;
 use crate::gpu::Gpu;
 use crate::scene::{LevelOfDetail, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition};
+use crate::terrain::recipe::Recipe;
 use crate::{Error, InputError};
 
 /// A scene built from a file, with the file's camera and quality.
@@ -88,7 +89,8 @@ impl LoadedScene {
         let mut objects = Vec::new();
         let mut land = None;
         if let Some(terrain) = &file.terrain {
-            let source = TerrainSource::from(terrain.recipe.clone())
+            let recipe = Recipe { features: self.features.clone(), ..terrain.recipe.clone() };
+            let source = TerrainSource::from(recipe)
                 .with_patches(&terrain.patches)
                 .with_textures(self.textures.clone());
             let source = match &terrain.target {
@@ -101,6 +103,10 @@ impl LoadedScene {
             };
             let source = match &terrain.holes {
                 Some(holes) => source.with_holes(holes.clone()),
+                None => source,
+            };
+            let source = match &self.elevation {
+                Some(elevation) => source.with_elevation(elevation.clone()),
                 None => source,
             };
             let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;

@@ -150,6 +150,18 @@ impl Features {
         config.check_overflow(self.largest(), self.mode == FeatureMode::Additive)
     }
 
+    /// Injected points of `seamless` terrain, by row and column in world coordinates.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn of_points(mode: FeatureMode, points: BTreeMap<(i64, i64), i32>) -> Self {
+        Self { mode, worlds: BTreeMap::from([([0, 0], points)]) }
+    }
+
+    /// The injected points of `seamless` terrain, by row and column in world coordinates.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn points(&self) -> impl Iterator<Item = (&(i64, i64), &i32)> {
+        self.worlds.get(&[0, 0]).into_iter().flatten()
+    }
+
     /// Whether there are no injected points.
     pub fn is_empty(&self) -> bool {
         self.worlds.values().all(BTreeMap::is_empty)

@@ -8,10 +8,11 @@ use crate::terrain::border::neighbours;
 use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::hydraulic::Hydraulic;
+use crate::terrain::lattice::Given;
 use crate::terrain::pad::surrounds;
 use crate::terrain::recipe::Recipe;
 use crate::terrain::thermal::Thermal;
-use crate::terrain::window::{Region, Window};
+use crate::terrain::window::{Region, Span, Window};
 
 /// Final heights of `patches` in 1/65536 height units, one list per patch. A list has rows of patchSize + 2·margin samples: the
 /// patch with `margin` samples on every side. Patches are generated in parallel on rayon's threads.
@@ -90,14 +91,30 @@ pub fn generate(
 /// Heights of a region of `seamless` terrain, by the generator of the configuration, before despiking and erosion. The region
 /// must be valid ([`Region::validate`]).
 pub fn region(config: &TerrainConfig, features: &Features, region: Region) -> Vec<i32> {
+    region_of(config, features, None, region)
+}
+
+/// The same as [`region`], with given heights. For noise, their lattice must be that of the region.
+pub(crate) fn region_of(
+    config: &TerrainConfig,
+    features: &Features,
+    given: Option<&Given<'_>>,
+    region: Region,
+) -> Vec<i32> {
     match (config.generator, config.interpolation) {
         (HeightGenerator::DiamondSquare, HeightInterpolation::Linear) => {
-            height::reference::height(config, features, region)
+            height::reference::height_of(config, features, given, region)
         }
         (HeightGenerator::DiamondSquare, HeightInterpolation::Smooth) => {
-            smooth::reference::smooth(config, features, region)
+            smooth::reference::smooth_of(config, features, given, region)
         }
-        _ => noise::reference::noise(config, region),
+        _ => {
+            let mut heights = noise::reference::noise(config, region);
+            let width = i64::from(region.width);
+            let spans = region.first.map(|first| Span { first, last: first + width - 1 });
+            Given::replace(given, region.coarser, spans, &mut heights);
+            heights
+        }
     }
 }
 

@@ -34,6 +34,26 @@ pub(crate) fn corners(config: &TerrainConfig, features: &Features, patch: [i32; 
     corners
 }
 
+/// Heights that replace those of one lattice; all finer lattices follow from them.
+pub(crate) struct Given<'a> {
+    /// Number of levels by which the lattice is coarser than the terrain.
+    pub coarser: u32,
+    /// The height of the lattice's point with these indices; `None` where none is given.
+    pub at: &'a dyn Fn([i64; 2]) -> Option<i32>,
+}
+
+impl Given<'_> {
+    /// Replaces the heights of a lattice that is `coarser` levels coarser than the terrain, if it is the one of the given heights.
+    pub(crate) fn replace(given: Option<&Self>, coarser: u32, spans: [Span; 2], heights: &mut [i32]) {
+        let Some(given) = given.filter(|given| given.coarser == coarser) else { return };
+        for (y, row) in (spans[1].first..).zip(heights.chunks_exact_mut(spans[0].width())) {
+            for (x, height) in (spans[0].first..).zip(row) {
+                *height = (given.at)([x, y]).unwrap_or(*height);
+            }
+        }
+    }
+}
+
 /// Clamps a height to ±[`HEIGHT_LIMIT`].
 pub(crate) fn limited(height: i32) -> i32 {
     height.clamp(-HEIGHT_LIMIT as i32, HEIGHT_LIMIT as i32)

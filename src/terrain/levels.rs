@@ -7,6 +7,7 @@ use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, Terra
 use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fields::REMEDY;
 use crate::terrain::lattice::{base_lattice, corners};
+use crate::terrain::replace::{ReplaceBuffers, ReplacePass};
 use crate::terrain::window::{Lattice, Region, Regions, SMOOTH_RIM, Span, Window, Windows};
 use crate::{Error, InputError};
 
@@ -44,11 +45,12 @@ impl LevelPass {
         buffers: HeightBuffers<'_>,
     ) -> Result<HeightJob, Error> {
         Window { patch: [0, 0], apron: windows.apron }.validate(config)?;
-        let job = self.prepare_regions(gpu, config, windows.regions(config), feature_capacity, buffers)?;
+        let regions = windows.regions(config);
+        let job = self.prepare_regions(gpu, config, regions, feature_capacity, buffers, None)?;
         Ok(HeightJob { apron: windows.apron, ..job })
     }
 
-    /// Prepares the generation of `regions`. The configuration must be valid.
+    /// Prepares the generation of `regions`, with given heights on one lattice or none. The configuration must be valid.
     ///
     /// # Errors
     /// [`InputError`] for regions coarser than the base lattice, and for buffers that are too short; [`GpuError`].
@@ -59,8 +61,10 @@ impl LevelPass {
         regions: Regions,
         feature_capacity: usize,
         buffers: HeightBuffers<'_>,
+        given: Option<GivenHeights<'_>>,
     ) -> Result<HeightJob, Error> {
-        let (Regions { count, width, coarser }, HeightBuffers { output, scratch }) = (regions, buffers);
+        let Regions { count, width, coarser } = regions;
+        let HeightBuffers { output, scratch } = buffers;
         let bound = || "must be \"diamondSquare\" in this pass: NoisePass makes the others";
         let is_square = config.generator == HeightGenerator::DiamondSquare;
         InputError::check(is_square, "generator", format!("{:?}", config.generator).to_lowercase(), bound)?;
@@ -74,6 +78,7 @@ impl LevelPass {
         let features = FeatureIndex::new(gpu, &grids, count, capacity)?;
         let base = Buffer::new(gpu, "base lattice", points(widths[0], count))?;
         let (mut origins, mut steps) = (Vec::new(), Vec::new());
+        let mut given_heights = None;
         for level in 0..grids.len() {
             let left = grids.len() - 1 - level;
             let params = Level {
@@ -98,6 +103,13 @@ impl LevelPass {
             // cell.
             let edge = params.fine_width / 2 + 1;
             steps.push(Step::covering(&self.kernel, groups, [edge, edge, count]));
+            if let Some(given) = given.filter(|given| given.coarser == left as u32 + coarser) {
+                let width = params.fine_width;
+                let heights = Buffer::new(gpu, "given heights", points(width, count))?;
+                let buffers = ReplaceBuffers { given: &heights, heights: buffers.fine };
+                steps.push(given.pass.step(gpu, width, count, buffers)?);
+                given_heights = Some(GivenLattice { level: level + 1, heights });
+            }
             origins.push(starts);
         }
         let job = Job::new(gpu, self.label, steps)?;
@@ -110,9 +122,17 @@ impl LevelPass {
             base,
             origins,
             features,
+            given: given_heights,
             job,
         })
     }
+}
+
+/// The part of a coarser lattice from which a region follows. Its width is the same for all regions of equal width.
+pub(crate) fn lattice_region(config: &TerrainConfig, region: Region, coarser: u32) -> Region {
+    let level = (config.levels() - coarser) as usize;
+    let first = region.levels(config)[level].map(|span| span.first);
+    Region { first, width: level_widths(config, region.width, region.coarser)[level], coarser }
 }
 
 /// Width of a region in points at each level, starting with the base lattice. These widths suffice for regions at any position
@@ -151,6 +171,14 @@ pub struct HeightBuffers<'a> {
     pub output: &'a Buffer<i32>,
     /// Scratch memory that was made for the same configuration and windows.
     pub scratch: &'a HeightScratch,
+}
+
+/// The lattice of given heights, and the pass that replaces generated ones.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GivenHeights<'a> {
+    pub pass: &'a ReplacePass,
+    /// Number of levels by which the lattice is coarser than the terrain.
+    pub coarser: u32,
 }
 
 /// Scratch memory for the levels between the base lattice and the output. Its size is about a third of the output's size. Jobs
@@ -219,7 +247,16 @@ pub struct HeightJob {
     /// First point of each window, for every level but the base lattice, in units of the level's spacing.
     origins: Vec<Buffer<[i32; 2]>>,
     features: FeatureIndex,
+    given: Option<GivenLattice>,
     job: Job,
+}
+
+/// The given heights of one lattice.
+#[derive(Debug, Clone)]
+struct GivenLattice {
+    /// Index of the lattice; 0 is the base lattice.
+    level: usize,
+    heights: Buffer<i32>,
 }
 
 impl HeightJob {
@@ -260,6 +297,20 @@ impl HeightJob {
         self.write(to, &regions, &vec![[0, 0]; firsts.len()], features)
     }
 
+    /// Stages the given heights of a region of the batch, in the order of [`lattice_region`].
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub(crate) fn stage_given(
+        &self,
+        to: &mut impl Upload,
+        number: usize,
+        heights: &[i32],
+    ) -> Result<(), GpuError> {
+        let Some(given) = &self.given else { return Ok(()) };
+        to.elements(&given.heights, number * points(self.widths[given.level], 1), heights)
+    }
+
     fn check_count(&self, path: &str, count: usize) -> Result<(), InputError> {
         let bound = || format!("must be at most {}, the batch's count", self.count);
         InputError::check(count <= self.count as usize, path, count, bound)
@@ -274,7 +325,6 @@ impl HeightJob {
         features: &Features,
     ) -> Result<(), Error> {
         let mut base = Vec::new();
-        let mut origins = vec![Vec::with_capacity(regions.len()); self.origins.len()];
         for (region, world) in regions.iter().zip(worlds) {
             let levels = region.levels(&self.config);
             let widened = |Span { first, .. }| Span { first, last: first + i64::from(self.widths[0]) - 1 };
@@ -282,22 +332,57 @@ impl HeightJob {
                 Border::Seamless => base_lattice(&self.config, features, levels[0].map(widened)),
                 Border::Wrap | Border::Blend(_) => corners(&self.config, features, *world),
             });
-            for (origins, spans) in origins.iter_mut().zip(&levels[1..]) {
-                origins.push(spans.map(|span| span.first as i32));
-            }
         }
         to.elements(&self.base, 0, &base)?;
+        let origins = self.origins_of(regions);
         for (buffer, origins) in self.origins.iter().zip(&origins) {
             to.elements(buffer, 0, origins)?;
         }
         self.features.write_to(to, regions.len() as u32, |level, window| {
-            let spacing = self.config.sample_spacing() << (origins.len() - 1 - level + self.coarser as usize);
-            let first = origins[level][window as usize].map(|first| i64::from(first) * spacing);
-            let origin = if self.config.border == Border::Seamless { first } else { [0, 0] };
-            let lattice = Lattice { origin, width: self.widths[level + 1], spacing };
-            features.on_lattice(worlds[window as usize], lattice.grown(rim(&self.config)), true)
+            self.features_of(features, (level, origins[level][window as usize]), worlds[window as usize])
         })?;
         Ok(())
+    }
+
+    /// First point of each region, for every level but the base lattice.
+    fn origins_of(&self, regions: &[Region]) -> Vec<Vec<[i32; 2]>> {
+        let mut origins = vec![Vec::with_capacity(regions.len()); self.origins.len()];
+        for region in regions {
+            for (origins, spans) in origins.iter_mut().zip(&region.levels(&self.config)[1..]) {
+                origins.push(spans.map(|span| span.first as i32));
+            }
+        }
+        origins
+    }
+
+    /// The features that a level of a region needs, from the region's first point of the level.
+    fn features_of(
+        &self,
+        features: &Features,
+        (level, origin): (usize, [i32; 2]),
+        world: [i32; 2],
+    ) -> Vec<(u32, u32, i32)> {
+        let finer = self.origins.len() - 1 - level + self.coarser as usize;
+        let spacing = self.config.sample_spacing() << finer;
+        let first = origin.map(|first| i64::from(first) * spacing);
+        let origin = if self.config.border == Border::Seamless { first } else { [0, 0] };
+        let lattice = Lattice { origin, width: self.widths[level + 1], spacing };
+        features.on_lattice(world, lattice.grown(rim(&self.config)), true)
+    }
+
+    /// Number of features that regions, given by their first samples, need room for.
+    pub(crate) fn feature_count(&self, firsts: &[[i64; 2]], features: &Features) -> usize {
+        let width = self.widths[self.widths.len() - 1];
+        let region = |first: &[i64; 2]| Region { first: *first, width, coarser: self.coarser };
+        let regions: Vec<Region> = firsts.iter().map(region).collect();
+        let origins = self.origins_of(&regions).into_iter().enumerate();
+        let needed = |(level, origins): (usize, Vec<[i32; 2]>)| {
+            origins
+                .into_iter()
+                .map(|origin| self.features_of(features, (level, origin), [0, 0]).len())
+                .sum::<usize>()
+        };
+        origins.map(needed).sum()
     }
 
     /// Records the generation of all windows of the batch.

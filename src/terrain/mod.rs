@@ -8,6 +8,7 @@ pub mod border;
 pub mod config;
 pub mod cover;
 pub mod despike;
+pub mod elevation;
 pub mod export;
 pub mod features;
 pub mod field;
@@ -19,9 +20,11 @@ pub mod generator;
 pub mod ground;
 pub mod height;
 pub mod hydraulic;
-mod lattice;
 #[cfg(feature = "gpu")]
-mod levels;
+pub(crate) mod injection;
+pub(crate) mod lattice;
+#[cfg(feature = "gpu")]
+pub(crate) mod levels;
 #[cfg(feature = "gpu")]
 pub mod materials;
 pub mod mesh;
@@ -35,6 +38,7 @@ pub mod recipe;
 #[cfg(feature = "gpu")]
 pub mod regions;
 pub mod remainder;
+pub mod replace;
 pub mod smooth;
 pub mod texture;
 pub mod thermal;

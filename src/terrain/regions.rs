@@ -5,7 +5,7 @@ use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, Terra
 use crate::terrain::features::Features;
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::HeightPass;
-use crate::terrain::levels::{HeightBuffers, HeightJob, LevelPass};
+use crate::terrain::levels::{GivenHeights, HeightBuffers, HeightJob, LevelPass};
 use crate::terrain::noise::{NoiseJob, NoisePass};
 use crate::terrain::smooth::SmoothPass;
 use crate::terrain::window::{Regions, Windows};
@@ -66,9 +66,11 @@ impl RegionPass {
     ) -> Result<RegionJob, Error> {
         Ok(RegionJob(match &self.0 {
             Pass::Levels(pass) => {
-                Prepared::Levels(pass.prepare(gpu, config, windows, feature_capacity, buffers)?)
+                Prepared::Levels(Box::new(pass.prepare(gpu, config, windows, feature_capacity, buffers)?))
             }
-            Pass::Noise(pass) => Prepared::Noise(pass.prepare(gpu, config, windows, buffers.output)?),
+            Pass::Noise(pass) => {
+                Prepared::Noise(Box::new(pass.prepare(gpu, config, windows, buffers.output)?))
+            }
         }))
     }
 
@@ -85,12 +87,27 @@ impl RegionPass {
         feature_capacity: usize,
         buffers: HeightBuffers<'_>,
     ) -> Result<RegionJob, Error> {
+        self.prepare_given(gpu, config, regions, feature_capacity, buffers, None)
+    }
+
+    /// The same as [`RegionPass::prepare_regions`], with given heights on one lattice. Noise ignores them: no height depends on
+    /// another.
+    pub(crate) fn prepare_given(
+        &self,
+        gpu: &Gpu,
+        config: &TerrainConfig,
+        regions: Regions,
+        feature_capacity: usize,
+        buffers: HeightBuffers<'_>,
+        given: Option<GivenHeights<'_>>,
+    ) -> Result<RegionJob, Error> {
         Ok(RegionJob(match &self.0 {
             Pass::Levels(pass) => {
-                Prepared::Levels(pass.prepare_regions(gpu, config, regions, feature_capacity, buffers)?)
+                let job = pass.prepare_regions(gpu, config, regions, feature_capacity, buffers, given)?;
+                Prepared::Levels(Box::new(job))
             }
             Pass::Noise(pass) => {
-                Prepared::Noise(pass.prepare_regions(gpu, config, regions, buffers.output)?)
+                Prepared::Noise(Box::new(pass.prepare_regions(gpu, config, regions, buffers.output)?))
             }
         }))
     }
@@ -104,9 +121,9 @@ pub struct RegionJob(Prepared);
 #[derive(Debug, Clone)]
 enum Prepared {
     /// Levels of subdivision.
-    Levels(HeightJob),
+    Levels(Box<HeightJob>),
     /// Octaves of noise.
-    Noise(NoiseJob),
+    Noise(Box<NoiseJob>),
 }
 
 impl RegionJob {
@@ -150,6 +167,30 @@ impl RegionJob {
                 without(features)?;
                 job.set_regions(to, firsts)
             }
+        }
+    }
+
+    /// Number of features that regions, given by their first samples, need room for.
+    pub(crate) fn feature_count(&self, firsts: &[[i64; 2]], features: &Features) -> usize {
+        match &self.0 {
+            Prepared::Levels(job) if !features.is_empty() => job.feature_count(firsts, features),
+            _ => 0,
+        }
+    }
+
+    /// Stages the given heights of a region of the batch.
+    ///
+    /// # Errors
+    /// [`crate::gpu::GpuError`].
+    pub(crate) fn stage_given(
+        &self,
+        to: &mut impl Upload,
+        number: usize,
+        heights: &[i32],
+    ) -> Result<(), Error> {
+        match &self.0 {
+            Prepared::Levels(job) => Ok(job.stage_given(to, number, heights)?),
+            Prepared::Noise(_) => Ok(()),
         }
     }
 

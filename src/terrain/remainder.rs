@@ -178,7 +178,7 @@ fn ridged(config: &TerrainConfig, coarser: u32) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use std::collections::HashMap;
     use std::ops::RangeInclusive;
 
@@ -188,13 +188,19 @@ mod tests {
     use crate::terrain::field::region;
     use crate::terrain::window::Region;
 
-    const CELLS: usize = 4;
+    pub(crate) const CELLS: usize = 4;
 
-    /// Largest second difference around the cells of a node, and its largest exact distance from the terrain.
-    fn exact(config: &TerrainConfig, coarser: u32, first: [i64; 2]) -> (i64, f64) {
+    /// Largest second difference around the cells of a node, and its largest exact distance from the terrain. `heights` makes the
+    /// heights of a region.
+    pub(crate) fn exact(
+        config: &TerrainConfig,
+        heights: impl Fn(Region) -> Vec<i32>,
+        coarser: u32,
+        first: [i64; 2],
+    ) -> (i64, f64) {
         let made = |region_of: Region| {
             region_of.validate(config).expect("inside");
-            region(config, &Features::default(), region_of).into_iter().map(i64::from).collect::<Vec<_>>()
+            heights(region_of).into_iter().map(i64::from).collect::<Vec<_>>()
         };
         let reach = remainder_reach(config) as usize;
         let width = CELLS + 1 + 2 * reach;
@@ -260,7 +266,8 @@ mod tests {
                 config.validate().expect("valid");
                 let coarser = 1 + words[2] % 5;
                 let first = [words[3], more[3]].map(|word| i64::from(word % 20_001) - 10_000);
-                let (bent, largest) = exact(&config, coarser, first);
+                let heights = |of: Region| region(&config, &Features::default(), of);
+                let (bent, largest) = exact(&config, heights, coarser, first);
                 let bound = remainder(&config, coarser, bent);
                 assert!(
                     largest <= bound as f64,

@@ -26,11 +26,11 @@ fn config() -> TerrainConfig {
 }
 
 /// A scene of endless terrain, and the means to look at it.
-struct World {
-    gpu: Gpu,
-    scene: Scene,
-    land: ObjectId,
-    view: View,
+pub struct World {
+    pub gpu: Gpu,
+    pub scene: Scene,
+    pub land: ObjectId,
+    pub view: View,
     raw: Raw,
     measure: Renderer,
 }
@@ -40,7 +40,7 @@ impl World {
         Self::of(&TerrainSource::endless(config).with_limits(limits), size)
     }
 
-    fn of(source: &TerrainSource, size: [u32; 2]) -> Self {
+    pub fn of(source: &TerrainSource, size: [u32; 2]) -> Self {
         let gpu = gpu();
         let mut scene = Scene::new(&gpu).expect("made");
         let land = scene.add_terrain(source).expect("added");
@@ -51,7 +51,7 @@ impl World {
     }
 
     /// A camera above the ground that looks to the north, and a little down.
-    fn above(&self, at: [f64; 2], height: f64) -> Camera {
+    pub fn above(&self, at: [f64; 2], height: f64) -> Camera {
         let ground = self.scene.ground(self.land, at[0], at[1]).expect("valid").expect("ground").height;
         let eye = [at[0], ground + height, at[1]];
         let target = [at[0] + 0.2, eye[1] - 0.25, at[1] - 1.0];
@@ -59,13 +59,13 @@ impl World {
     }
 
     /// Records a frame, and waits for it.
-    fn frame(&mut self) {
+    pub fn frame(&mut self) {
         let Self { gpu, scene, view, .. } = self;
         gpu.try_run("frame", |encoder| scene.record(encoder, &mut [view])).expect("recorded");
     }
 
     /// Records frames until all detail is there. Returns their number.
-    fn settle(&mut self) -> usize {
+    pub fn settle(&mut self) -> usize {
         for frame in 1..600 {
             self.frame();
             let statistics = self.scene.terrain_statistics(self.land).expect("endless");
@@ -77,7 +77,7 @@ impl World {
     }
 
     /// The world positions that the pixels show; `None` where the sky is.
-    fn positions(&mut self, camera: &Camera) -> Vec<Option<DVec3>> {
+    pub fn positions(&mut self, camera: &Camera) -> Vec<Option<DVec3>> {
         let Self { gpu, scene, view, raw, measure, .. } = self;
         raw.frame(scene, view, measure, &[Layer::Measure]);
         read_positions(raw, gpu, camera)
@@ -122,30 +122,34 @@ fn pixel(camera: &Camera, at: DVec3) -> DVec2 {
 }
 
 /// How far the surface at positions that are drawn lies from the truth: the offset of each in pixels.
-fn offsets(config: &TerrainConfig, camera: &Camera, drawn: &[Option<DVec3>]) -> Vec<Option<DVec2>> {
+pub fn offsets(
+    truth: &(impl Fn(f64, f64) -> f64 + Sync),
+    camera: &Camera,
+    drawn: &[Option<DVec3>],
+) -> Vec<Option<DVec2>> {
     let offset = |at: &Option<DVec3>| {
         let at = (*at)?;
-        let exact = DVec3::new(at.x, truth(config, at.x, at.z), at.z);
+        let exact = DVec3::new(at.x, truth(at.x, at.z), at.z);
         Some(pixel(camera, at) - pixel(camera, exact))
     };
     drawn.par_iter().map(offset).collect()
 }
 
-fn largest(offsets: &[Option<DVec2>]) -> f64 {
+pub fn largest(offsets: &[Option<DVec2>]) -> f64 {
     offsets.iter().flatten().map(|offset| offset.length()).fold(0.0, f64::max)
 }
 
 /// Rounding of drawn positions, in pixels.
-const ROUNDING: f64 = 0.01;
+pub const ROUNDING: f64 = 0.01;
 
 /// Every `step`-th of the positions; the others are left out.
-fn some(drawn: &[Option<DVec3>], step: usize) -> Vec<Option<DVec3>> {
+pub fn some(drawn: &[Option<DVec3>], step: usize) -> Vec<Option<DVec3>> {
     drawn.iter().enumerate().map(|(at, place)| place.filter(|_| at % step == 0)).collect()
 }
 
-/// Pixels that show the sky although the finest ground lies behind all of their corners. Only pixels below one that shows the ground
+/// Pixels that show the sky although the finest ground lies behind all of their corners, edges and middles. Only pixels below one that shows the ground
 /// are looked at.
-fn holes(world: &World, camera: &Camera, drawn: &[Option<DVec3>]) -> usize {
+pub fn holes(world: &World, camera: &Camera, drawn: &[Option<DVec3>]) -> usize {
     let [width, height] = world.raw.size;
     let is_sky = |x: u32, y: u32| drawn[(y * width + x) as usize].is_none();
     let below = |x: u32| (0..height).skip_while(move |y| is_sky(x, *y)).filter(move |y| is_sky(x, *y));
@@ -154,22 +158,21 @@ fn holes(world: &World, camera: &Camera, drawn: &[Option<DVec3>]) -> usize {
         let ray = Ray { limit: 11_000.0, ..Ray::through(camera, pixel).expect("inside") };
         world.scene.pick(&ray).expect("valid").is_some()
     };
-    let is_hole = |[x, y]: [f32; 2]| {
-        [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].iter().all(|[dx, dy]| hits([x + dx, y + dy]))
-    };
+    let is_hole =
+        |[x, y]: [f32; 2]| (0..9).all(|at| hits([x + 0.5 * (at % 3) as f32, y + 0.5 * (at / 3) as f32]));
     suspects.filter(|pixel| is_hole(*pixel)).count()
 }
 
 /// The measurements of a flight.
 #[derive(Debug, Default)]
-struct Flight {
-    holes: usize,
+pub struct Flight {
+    pub holes: usize,
     /// The largest displacement and the largest jump, in pixels, of frames with all detail and of the others.
-    ready: [f64; 2],
+    pub ready: [f64; 2],
     rest: [f64; 2],
     points: usize,
-    ready_frames: usize,
-    made: usize,
+    pub ready_frames: usize,
+    pub made: usize,
     most_made: usize,
     drawn: usize,
     triangles: u64,
@@ -178,19 +181,19 @@ struct Flight {
 }
 
 /// How to fly.
-struct Path {
-    from: [f64; 2],
-    frames: usize,
+pub struct Path {
+    pub from: [f64; 2],
+    pub frames: usize,
     /// Metres to fly to the north, and height above the ground at the end. The height is 2 at first.
-    metres: f64,
-    height: f64,
+    pub metres: f64,
+    pub height: f64,
     /// Every so many frames are compared with the finest heights, at every so many pixels.
-    every: usize,
-    step: usize,
+    pub every: usize,
+    pub step: usize,
 }
 
 /// Flies, and looks at each frame.
-fn flight(world: &mut World, config: &TerrainConfig, path: &Path) -> Flight {
+pub fn flight(world: &mut World, truth: &(impl Fn(f64, f64) -> f64 + Sync), path: &Path) -> Flight {
     let Path { from, frames, metres, height, every, step } = *path;
     let mut flight = Flight::default();
     let start = world.above(from, 2.0);
@@ -212,7 +215,7 @@ fn flight(world: &mut World, config: &TerrainConfig, path: &Path) -> Flight {
             let earlier = at(world, frame - 1);
             let drawn = some(&world.positions(&earlier), step);
             let is_ready = world.scene.terrain_statistics(world.land).expect("endless").ready == 1.0;
-            let after = offsets(config, &earlier, &drawn);
+            let after = offsets(truth, &earlier, &drawn);
             let jumps = before
                 .iter()
                 .zip(&after)
@@ -240,7 +243,7 @@ fn flight(world: &mut World, config: &TerrainConfig, path: &Path) -> Flight {
             (flight.triangles + triangles, flight.most_triangles.max(triangles));
         if frame % every == 0 {
             let drawn = some(&drawn, step);
-            let found = offsets(config, &camera, &drawn);
+            let found = offsets(truth, &camera, &drawn);
             flight.points += found.iter().flatten().count();
             let of = if is_ready { &mut flight.ready } else { &mut flight.rest };
             of[0] = of[0].max(largest(&found));
@@ -256,7 +259,7 @@ fn a_flight_has_no_holes_and_keeps_its_promise() {
     let limits = EndlessLimits { nodes_per_frame: 64, ..EndlessLimits::default() };
     let mut world = World::new(config.clone(), limits, [160, 90]);
     let path = Path { from: [1.0e6, 40.0], frames: 40, metres: 400.0, height: 150.0, every: 8, step: 7 };
-    let flight = flight(&mut world, &config, &path);
+    let flight = flight(&mut world, &|x, z| truth(&config, x, z), &path);
     println!("{flight:?}");
     assert_eq!(flight.holes, 0);
     assert!(flight.most_made <= 64 && flight.made > 50, "{flight:?}");
@@ -275,7 +278,7 @@ fn a_long_flight() {
         let mut world = World::new(config.clone(), limits, [1280, 720]);
         let start = std::time::Instant::now();
         let path = Path { from, frames, metres: 5_000.0, height: 5_000.0, every: 20, step: 9 };
-        let flight = flight(&mut world, &config, &path);
+        let flight = flight(&mut world, &|x, z| truth(&config, x, z), &path);
         println!("{from:?}: {flight:?}, {:.0} s", start.elapsed().as_secs_f64());
         assert_eq!(flight.holes, 0);
         assert!(flight.most_made <= 32, "{flight:?}");
@@ -284,7 +287,7 @@ fn a_long_flight() {
 }
 
 /// A picture in colour of what the view sees.
-fn picture(world: &mut World) -> image::RgbaImage {
+pub fn picture(world: &mut World) -> image::RgbaImage {
     let target = Offscreen::new(&world.gpu, world.raw.size).expect("made");
     let mut renderer = Renderer::new(&world.gpu, target.format()).expect("a format");
     renderer.prepare(&world.scene).expect("compiled");
@@ -460,7 +463,7 @@ fn views_far_apart_and_a_shadow_have_their_own_detail() {
         frame.expect("recorded");
         let drawn = read_positions(raw, gpu, &camera);
         assert_eq!(holes(&world, &camera, &drawn), 0);
-        let most = largest(&offsets(&config, &camera, &some(&drawn, 7)));
+        let most = largest(&offsets(&|x, z| truth(&config, x, z), &camera, &some(&drawn, 7)));
         assert!(most <= 1.0 + ROUNDING && most > 0.01, "{most}");
     }
 }
@@ -541,7 +544,7 @@ fn the_ground_is_within_a_pixel_of_the_finest_heights() {
         world.view.set(camera).expect("valid");
         let frames = world.settle();
         let drawn = world.positions(&camera);
-        let found = offsets(&config, &camera, &some(&drawn, 5));
+        let found = offsets(&|x, z| truth(&config, x, z), &camera, &some(&drawn, 5));
         let (seen, most) = (drawn.iter().flatten().count(), largest(&found));
         let nodes = world.scene.terrain_statistics(world.land).expect("endless");
         println!(

@@ -8,6 +8,8 @@ mod chunks;
 #[cfg(unix)]
 mod cost;
 mod counts;
+mod edited;
+mod elevation;
 mod endless;
 mod frame;
 mod geomorph;

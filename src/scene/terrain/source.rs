@@ -1,12 +1,14 @@
 //! Sources of terrain: a recipe or the caller's heights, with the patches to show and their appearance.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use super::endless::{EndlessLimits, TerrainHole};
 use crate::InputError;
 use crate::scene::options::TerrainStyle;
 use crate::terrain::blend::Shading;
 use crate::terrain::config::TerrainConfig;
+use crate::terrain::elevation::ElevationSource;
 use crate::terrain::fields::Fields;
 use crate::terrain::morph::{Morph, check_target};
 use crate::terrain::recipe::Recipe;
@@ -38,6 +40,8 @@ pub struct TerrainSource {
     pub(super) endless: Option<EndlessLimits>,
     /// Holes of endless terrain; `None` for terrain that can have none.
     pub(super) holes: Option<Vec<TerrainHole>>,
+    /// The elevation map of endless terrain.
+    pub(super) elevation: Option<Arc<dyn ElevationSource>>,
 }
 
 impl TerrainSource {
@@ -57,7 +61,7 @@ impl TerrainSource {
     ///
     /// Views that permit less than 1/16 pixel are drawn as with 1/16, and state no bound.
     ///
-    /// The configuration must be `seamless`. Features, despiking, erosion and a target are not possible. [`Scene::ground`] and
+    /// The configuration must be `seamless`. Despiking, erosion and a target are not possible. [`Scene::ground`] and
     /// [`Scene::pick`] answer for the finest heights everywhere, whatever is drawn; the host makes those patches when it is asked.
     ///
     /// [`Scene::ground`]: crate::scene::Scene::ground
@@ -90,6 +94,15 @@ impl TerrainSource {
     #[must_use]
     pub fn with_holes(self, holes: Vec<TerrainHole>) -> Self {
         Self { holes: Some(holes), ..self }
+    }
+
+    /// Gives endless terrain heights of the caller: an elevation map ([`ElevationTiles`](crate::terrain::elevation::ElevationTiles)), or
+    /// tiles that arrive one by one. Around the map and between its samples, heights are generated from the configuration. Nodes whose
+    /// heights are on their way are not drawn yet; coarser ones are. [`Scene::ground`](crate::scene::Scene::ground) answers `None`
+    /// there.
+    #[must_use]
+    pub fn with_elevation(self, elevation: Arc<dyn ElevationSource>) -> Self {
+        Self { elevation: Some(elevation), ..self }
     }
 
     /// Terrain from heights that the caller's passes have computed or will compute. The first field shows the first
@@ -134,6 +147,7 @@ impl TerrainSource {
             target: None,
             endless: None,
             holes: None,
+            elevation: None,
         }
     }
 
@@ -193,6 +207,7 @@ impl TerrainSource {
         let Some(limits) = self.endless else {
             let bound = || "must not be given unless terrain is endless";
             InputError::check(self.holes.is_none(), "holes", "given", bound)?;
+            InputError::check(self.elevation.is_none(), "elevation", "given", bound)?;
             return Ok(None);
         };
         let refused =

@@ -4,11 +4,21 @@
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, mean_of_four};
-use crate::terrain::lattice::{Injected, base_lattice, world};
+use crate::terrain::lattice::{Given, Injected, base_lattice, world};
 use crate::terrain::window::{Region, Span};
 
 /// Heights of a region, in rows of `region.width` samples. The region must be valid.
 pub fn height(config: &TerrainConfig, features: &Features, region: Region) -> Vec<i32> {
+    height_of(config, features, None, region)
+}
+
+/// The same, with given heights.
+pub(crate) fn height_of(
+    config: &TerrainConfig,
+    features: &Features,
+    given: Option<&Given<'_>>,
+    region: Region,
+) -> Vec<i32> {
     let levels = region.levels(config);
     let draw = Draw::new(config);
     let base_spacing = config.sample_spacing() << config.levels();
@@ -23,6 +33,7 @@ pub fn height(config: &TerrainConfig, features: &Features, region: Region) -> Ve
             injected: Injected::new(features, pair[1], base_spacing >> (level + 1), (1, true)),
         };
         grid = lattice.subdivide(&grid, pair[0]);
+        Given::replace(given, config.levels() - level as u32 - 1, pair[1], &mut grid);
     }
     grid
 }

@@ -1,6 +1,6 @@
 //! The GPU pass of `kernels/terrain/node.wgsl`.
 
-use super::{NODE_FACTS, NodeShape};
+use super::NodeShape;
 use crate::gpu::bindings::terrain::node as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::node::NodeParams;
@@ -17,11 +17,12 @@ pub struct NodePass {
 pub struct NodeBuffers<'a> {
     /// Read: finer heights, [`NodeShape::region_width`]² for each region.
     pub heights: &'a Buffer<i32>,
-    /// Read: the tile that each region makes. Regions whose tile is beyond the end of `facts` make none.
+    /// Read: the tile that each region makes. Regions whose tile is beyond the end of `tiles` make facts alone, and those beyond the
+    /// end of `facts` nothing.
     pub slots: &'a Buffer<u32>,
     /// Written: tiles of [`NodeShape::tile_width`]² heights.
     pub tiles: &'a Buffer<i32>,
-    /// Written: [`NODE_FACTS`] words for each tile. They must be 0 before ([`NodeFacts::from_words`](super::NodeFacts::from_words)).
+    /// Written: [`NODE_FACTS`](super::NODE_FACTS) words for each tile. They must be 0 before ([`NodeFacts::from_words`](super::NodeFacts::from_words)).
     pub facts: &'a Buffer<u32>,
 }
 
@@ -48,8 +49,6 @@ impl NodePass {
         InputError::check_within("shape.finer", shape.finer, 0..=4)?;
         InputError::check_within("shape.size", shape.size, 3..=4097)?;
         let NodeBuffers { heights, slots, tiles, facts } = buffers;
-        let tile = (shape.tile_width() as usize).pow(2);
-        tiles.check_holds("tiles", facts.len() / NODE_FACTS as usize * tile)?;
         let width = shape.region_width();
         heights.check_holds("heights", count as usize * (width as usize).pow(2))?;
         slots.check_holds("slots", count as usize)?;

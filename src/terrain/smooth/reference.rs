@@ -4,11 +4,21 @@
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, four_point, mean_of_two};
-use crate::terrain::lattice::{Injected, base_lattice, limited, world};
+use crate::terrain::lattice::{Given, Injected, base_lattice, limited, world};
 use crate::terrain::window::{Region, SMOOTH_RIM, Span};
 
 /// Heights of a region, in rows of `region.width` samples. The region must be valid, and `config.interpolation` must be `Smooth`.
 pub fn smooth(config: &TerrainConfig, features: &Features, region: Region) -> Vec<i32> {
+    smooth_of(config, features, None, region)
+}
+
+/// The same, with given heights.
+pub(crate) fn smooth_of(
+    config: &TerrainConfig,
+    features: &Features,
+    given: Option<&Given<'_>>,
+    region: Region,
+) -> Vec<i32> {
     let levels = region.levels(config);
     let draw = Draw::new(config);
     let base_spacing = config.sample_spacing() << config.levels();
@@ -26,6 +36,7 @@ pub fn smooth(config: &TerrainConfig, features: &Features, region: Region) -> Ve
             injected: Injected::new(features, pair[1], spacing, (SMOOTH_RIM, true)),
         };
         grid = step.made(&grid);
+        Given::replace(given, config.levels() - level - 1, pair[1], &mut grid);
     }
     grid
 }

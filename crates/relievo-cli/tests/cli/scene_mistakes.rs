@@ -16,6 +16,10 @@ const ENDLESS_FAR: &str =
 const ENDLESS_HOLE: &str = r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "hole"}, "endless": true,
     "holes": [{"at": [1, 2], "radius": 0}]}"#;
 
+/// Endless terrain with an elevation map whose margin is none.
+const ELEVATION: &str = r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "e", "coarseLevels": 1}, "endless": true,
+    "elevation": {"file": "map.png", "range": [-20, 20], "spacing": 8, "first": [-3, 4], "margin": -2}}"#;
+
 /// Mistakes: the place in the good scene, the JSON that comes there (`null` removes what is there; see [`value`]), and the
 /// path with the value and some words of the message.
 const MISTAKES: &[(&str, &str, &str, &str)] = &[
@@ -64,6 +68,10 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     ("/terrain/view", "100", "terrain.endless = missing", "view distance"),
     ("/terrain/view", "0", "terrain.view = 0", "0.001..="),
     ("/terrain/holes", "[]", "terrain.endless = missing", "holes"),
+    ("/terrain/features", r#"["gone.json"]"#, "terrain.features[0] = gone.json", "cannot be read"),
+    ("/terrain/featureMode", "\"add\"", "terrain.featureMode = add", "keep"),
+    ("/terrain/elevation", "{}", "terrain.endless = missing", "elevation map"),
+    ("/terrain", ELEVATION, "terrain.elevation.margin = -2", "0..="),
     ("/terrain", ENDLESS_FAR, "terrain.view = 1000", "coarseLevels"),
     ("/terrain", ENDLESS, "meshes[1].scatter.area = missing", "terrain is endless"),
     ("/terrain", ENDLESS_HOLE, "terrain.holes[0].radius = 0", "0.001..="),

@@ -49,6 +49,7 @@ pub static OPERATIONS: &[Operation] = operations![
     terrain / smooth,
     terrain / wrap,
     terrain / noise,
+    terrain / replace,
     terrain / border,
     terrain / pad,
     terrain / despike,

@@ -6,15 +6,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use glam::DVec3;
 
 use super::TerrainHole;
-use crate::InputError;
+use super::elevation::Elevation;
 use crate::scene::object_kind::UnitRay;
 use crate::scene::ray::SurfaceHit;
 use crate::terrain::config::TerrainConfig;
-use crate::terrain::field::region;
+use crate::terrain::field::{region, region_of};
 use crate::terrain::ground::Ground;
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::recipe::Recipe;
 use crate::terrain::window::Region;
+use crate::{Error, InputError};
 
 /// Samples along an edge of a patch.
 const SIZE: u32 = 33;
@@ -26,6 +27,7 @@ const KEPT: usize = 1024;
 #[derive(Debug)]
 pub(super) struct FinestGround {
     recipe: Recipe,
+    elevation: Option<Elevation>,
     /// The terrain in patches of [`SIZE`] samples.
     patch: TerrainConfig,
     edge: f64,
@@ -40,11 +42,11 @@ struct Patches {
 }
 
 impl FinestGround {
-    pub fn new(recipe: &Recipe) -> Result<Self, InputError> {
+    pub fn new(recipe: &Recipe, elevation: Option<Elevation>) -> Result<Self, InputError> {
         let patch = TerrainConfig { patch_size: SIZE, ..recipe.config.clone() };
         let patches = Patches { ground: Ground::new(&patch)?, order: VecDeque::new() };
         let edge = patch.edge_length();
-        Ok(Self { recipe: recipe.clone(), patch, edge, patches: Mutex::new(patches) })
+        Ok(Self { recipe: recipe.clone(), elevation, patch, edge, patches: Mutex::new(patches) })
     }
 
     /// The ground at a world position; `None` beyond the world and in holes.
@@ -127,17 +129,29 @@ impl FinestGround {
         (is_index(column) && is_index(row)).then_some([column as i32, row as i32])
     }
 
-    /// The patches, with `patch` among them; `None` for a patch beyond the world.
+    /// The heights of a region; `None` while heights of the elevation map are on their way.
+    fn heights(&self, samples: Region) -> Result<Option<Vec<i32>>, InputError> {
+        let Recipe { config, features, .. } = &self.recipe;
+        let Some(map) = self.elevation.as_ref().filter(|map| map.reaches(samples)) else {
+            return Ok(Some(region(config, features, samples)));
+        };
+        let heights = map.given(config, samples, |given| region_of(config, features, Some(given), samples));
+        heights.map_err(|error| match error {
+            Error::Input(error) => error,
+            other => InputError::new("elevation", "a tile", format!("must load: {other}")),
+        })
+    }
+
+    /// The patches, with `patch` among them; `None` for a patch beyond the world, and while its heights are on their way.
     fn with(&self, patch: [i32; 2]) -> Result<Option<MutexGuard<'_, Patches>>, InputError> {
         let mut patches = self.patches.lock().unwrap_or_else(PoisonError::into_inner);
         if !patches.ground.contains(patch) {
             let first = patch.map(|index| i64::from(index) * (i64::from(SIZE) - 1));
             let samples = Region { first, width: self.patch.patch_size, coarser: 0 };
-            let config = &self.recipe.config;
-            if samples.validate(config).is_err() {
+            if samples.validate(&self.recipe.config).is_err() {
                 return Ok(None);
             }
-            let heights = region(config, &self.recipe.features, samples);
+            let Some(heights) = self.heights(samples)? else { return Ok(None) };
             patches.ground.insert(patch, &heights, 0)?;
             patches.order.push_back(patch);
             if patches.order.len() > KEPT

@@ -3,6 +3,7 @@
 //! The host decides which nodes are drawn and which are made ([`Cover`]), and the device makes them. A node is drawn as soon as it is
 //! made, and refined as soon as its facts have arrived from the device: its extremes, and how far it lies from the finest heights.
 
+mod elevation;
 mod ground;
 mod in_view;
 mod pool;
@@ -33,6 +34,8 @@ use crate::shared::render::scene_terrain::{MORPH_START, STITCHED, TerrainNode, T
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::cover::planes;
+use crate::terrain::features::Features;
+use crate::terrain::injection::FeatureOffsets;
 use crate::terrain::materials::Materials;
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::node::NodeFacts;
@@ -42,9 +45,10 @@ use crate::terrain::remainder::remainder;
 use crate::terrain::texture::TerrainTexture;
 use crate::terrain::window::Region;
 use crate::{Error, InputError};
+use elevation::{Beyond, Elevation, NodeElevation};
 use ground::FinestGround;
 use in_view::{EndlessInView, ViewTable};
-use pool::{BATCH, Grid, NewNode, Pool};
+use pool::{BATCH, FoundFacts, Grid, NewNode, Pool, PoolSize};
 
 /// Number of parts along an edge of a node in which the displacement that a view allows is found. A smaller part allows more.
 const PARTS: u32 = 4;
@@ -64,8 +68,9 @@ const MOST_BIAS: f32 = 1024.0;
 /// Extent and memory of endless terrain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndlessLimits {
-    /// Distance in world units up to which terrain is drawn around each camera, at most one and a half spacings of the base lattice:
-    /// (`patch_size` − 1) · 2^`coarse_levels` · `terrain_scale`. `None`: as far as that.
+    /// Distance in world units up to which terrain is drawn around each camera, at most eight spacings of the base lattice:
+    /// (`patch_size` − 1) · 2^`coarse_levels` · `terrain_scale`. `None`: one and a half. Beyond that, the number of nodes grows with the
+    /// square of the distance; raise `coarse_levels` instead.
     pub view_distance: Option<f64>,
     /// Largest number of nodes to make in a frame, 16 to 1024. Default: 32.
     pub nodes_per_frame: u32,
@@ -84,21 +89,30 @@ impl Default for EndlessLimits {
 impl EndlessLimits {
     /// The largest view distance of a configuration.
     pub(crate) fn farthest(config: &TerrainConfig) -> f64 {
-        1.5 * config.edge_length() * f64::from(1 << config.coarse_levels)
+        8.0 * Self::base_spacing(config)
+    }
+
+    fn base_spacing(config: &TerrainConfig) -> f64 {
+        config.edge_length() * f64::from(1 << config.coarse_levels)
     }
 
     /// Checks the limits, and returns the view distance.
     fn checked(&self, config: &TerrainConfig) -> Result<f64, InputError> {
-        let most = Self::farthest(config);
-        let distance = self.view_distance.unwrap_or(most);
-        if !(distance > 0.0 && distance <= most) {
-            let bound = format!(
-                "must be above 0 and at most {most}, one and a half spacings of the base lattice; raise coarse_levels for more"
-            );
-            return Err(InputError::new("view_distance", distance, bound));
-        }
+        let (most, spacing) = (Self::farthest(config), Self::base_spacing(config));
+        let distance = self.view_distance.unwrap_or(1.5 * spacing);
+        let is_distance = distance > 0.0 && distance <= most;
+        InputError::check(is_distance, "view_distance", distance, || {
+            format!(
+                "must be above 0 and at most {most}, eight spacings of the base lattice; raise coarse_levels for more"
+            )
+        })?;
         InputError::check_within("nodes_per_frame", self.nodes_per_frame, 16..=1024)?;
         InputError::check_within("capacity", self.capacity, 256..=65_536)?;
+        // Half of the memory is left to finer nodes.
+        let least = 2 * ((2.0 * distance / spacing).ceil() as u32 + 1).pow(2);
+        InputError::check(self.capacity >= least, "capacity", self.capacity, || {
+            format!("must be at least {least} for this view distance; raise coarse_levels instead")
+        })?;
         Ok(distance)
     }
 }
@@ -150,6 +164,8 @@ pub struct EndlessStatistics {
     pub ready: f32,
     /// Number of nodes that were not made because the memory holds nodes in use only.
     pub refused: usize,
+    /// Number of nodes that were not made because heights of the elevation map are on their way.
+    pub awaited: usize,
     /// Number of nodes of each level that the views drew, without culling; the finest level is 0.
     pub levels: [u32; 18],
 }
@@ -162,6 +178,7 @@ pub(in crate::scene) struct Endless {
     limits: EndlessLimits,
     grid: Grid,
     view_distance: f64,
+    size: PoolSize,
     pool: Pool,
     residents: BTreeMap<Node, Resident>,
     free: Vec<u32>,
@@ -169,8 +186,15 @@ pub(in crate::scene) struct Endless {
     frame: u64,
     /// The nodes that the frame makes.
     new: Vec<NewNode>,
+    /// Nodes to make again: their heights have changed.
+    again: BTreeSet<Node>,
+    /// The injected heights, by how much they matter.
+    offsets: FeatureOffsets,
+    /// Whether bounds of nodes have changed since they were placed.
+    are_bounds_changed: bool,
     tables: Arc<Mutex<Vec<ViewTable>>>,
     ground: FinestGround,
+    elevation: Option<Elevation>,
     /// The holes; `None` for terrain that was added without.
     holes: Option<Vec<TerrainHole>>,
     /// Whether holes have changed since they were staged.
@@ -190,7 +214,20 @@ struct Resident {
     used: u64,
     /// The frame that makes the node.
     made: u64,
+    /// What lies below the heights from which the node is made.
+    beyond: Beyond,
+    /// What the device found; `None` until it arrives.
+    found: Option<FoundFacts>,
     facts: Option<Facts>,
+}
+
+/// What an elevation map gives to a node.
+enum Elevated {
+    /// Nothing: it does not reach the node.
+    Not,
+    /// Heights that are on their way.
+    NotYet,
+    By(NodeElevation),
 }
 
 /// Facts about a node on the host, in world units.
@@ -216,14 +253,19 @@ pub(in crate::scene) fn made(
     (recipe, limits): (&Recipe, EndlessLimits),
 ) -> Result<(Endless, Instances, Drawn), Error> {
     recipe.validate(&[], 0)?;
-    let grid = Grid::new(&recipe.config, limits.node_size)?;
+    let elevation =
+        source.elevation.as_ref().map(|given| Elevation::new(given, &recipe.config)).transpose()?;
+    let grid = Grid::new(&recipe.config, limits.node_size, elevation.is_some())?;
     pool::check(recipe, grid)?;
+    check_features(recipe, elevation.is_some())?;
     let view_distance = limits.checked(&recipe.config)?;
     let mut instances = Instances::new(limits.capacity as usize);
     let capacity = instances.capacity();
     let holes = source.holes.clone();
     check_holes(holes.as_deref().unwrap_or_default())?;
-    let pool = Pool::new(gpu, recipe, grid, (capacity, holes.is_some()))?;
+    let size =
+        PoolSize { capacity, has_holes: holes.is_some(), map: elevation.as_ref().map(Elevation::coarser) };
+    let pool = Pool::new(gpu, recipe, grid, size)?;
     let (chunks, draws) = drawn(gpu, layouts, source, (&pool, grid, capacity))?;
     let hidden = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
     for _ in 0..capacity {
@@ -235,13 +277,18 @@ pub(in crate::scene) fn made(
         limits,
         grid,
         view_distance,
+        size,
         pool,
         residents: BTreeMap::new(),
         free: (0..capacity as u32).rev().collect(),
         frame: 0,
         new: Vec::new(),
+        again: BTreeSet::new(),
+        offsets: FeatureOffsets::new(&recipe.config, &recipe.features),
+        are_bounds_changed: false,
         tables: Arc::default(),
-        ground: FinestGround::new(recipe)?,
+        ground: FinestGround::new(recipe, elevation.clone())?,
+        elevation,
         holes,
         are_holes_changed: false,
         statistics: EndlessStatistics { capacity, ..EndlessStatistics::default() },
@@ -294,10 +341,10 @@ fn drawn(
 }
 
 impl Endless {
-    /// The finest ground at a world position.
+    /// The finest ground at a world position; `None` in holes, and where heights of the elevation map are on their way.
     ///
     /// # Errors
-    /// [`InputError`] for a position beyond the world.
+    /// Those of the elevation map's source.
     pub fn point_at(&self, x: f64, z: f64) -> Result<Option<GroundPoint>, InputError> {
         self.ground.point_at(x, z, self.holes.as_deref().unwrap_or_default())
     }
@@ -349,8 +396,7 @@ impl Endless {
             for (x, z) in range(eye.z).flat_map(|z| range(eye.x).map(move |x| (x, z))) {
                 let root = Node { level, at: [x, z] };
                 // Only roots whose samples have world coordinates exist.
-                let region =
-                    Region { first: self.grid.first_of(root), width: 1, coarser: self.grid.coarser(level) };
+                let region = Region { width: 1, ..self.grid.region_of(root) };
                 if region.validate(self.config()).is_ok() {
                     roots.insert(root);
                 }
@@ -416,36 +462,135 @@ impl Endless {
         let Some((frame, facts)) = self.pool.arrived() else { return Vec::new() };
         let mut known = Vec::new();
         for (node, resident) in &mut self.residents {
-            if resident.facts.is_none() && resident.made <= frame {
-                let found = facts.get(resident.slot as usize).copied().flatten();
-                resident.facts = found.map(|found| facts_of(&self.recipe.config, self.grid, *node, &found));
-                known.extend(resident.facts.map(|_| *node));
+            if resident.found.is_none() && resident.made <= frame {
+                resident.found = facts.get(resident.slot as usize).copied().flatten();
+                known.extend(resident.found.map(|_| *node));
             }
         }
+        self.find_facts(&known);
         known
     }
 
-    /// Gives a node a place in the pool; `None` if all places are in use.
-    fn admit(&mut self, node: Node) -> Option<NewNode> {
+    /// Finds the facts of nodes from what the device found.
+    fn find_facts(&mut self, nodes: &[Node]) {
+        let (config, grid) = (&self.recipe.config, self.grid);
+        for node in nodes {
+            let Some(resident) = self.residents.get_mut(node) else { continue };
+            let injected = self.offsets.bound(config, grid.region_of(*node));
+            let found = resident.found;
+            let facts =
+                found.map(|found| facts_of(config, grid, node.level, (&found, resident.beyond), injected));
+            resident.facts = facts.or(resident.facts);
+        }
+    }
+
+    /// Replaces the injected heights. The nodes that they change are made again: at once if a frame may make all that are in use,
+    /// and otherwise coarsest first.
+    ///
+    /// # Errors
+    /// [`InputError`] for heights out of bounds, and for terrain with an elevation map.
+    pub fn set_features(&mut self, features: &Features) -> Result<(), InputError> {
+        let recipe = Recipe { features: features.clone(), ..self.recipe.clone() };
+        recipe.validate(&[], 0)?;
+        check_features(&recipe, self.elevation.is_some())?;
+        let offsets = FeatureOffsets::new(&recipe.config, features);
+        let changed = self.offsets.changed(&offsets);
+        (self.recipe, self.offsets) = (recipe, offsets);
+        self.ground = FinestGround::new(&self.recipe, self.elevation.clone())?;
+        let is_changed = |node: &Node| {
+            let region = self.grid.region_of(*node);
+            changed.iter().any(|point| point.changes(region))
+        };
+        let stale: Vec<Node> = self.residents.keys().filter(|node| is_changed(node)).copied().collect();
+        let is_used = |node: &&Node| self.residents.get(node).is_some_and(|own| own.used == self.frame);
+        let used: Vec<Node> = stale.iter().filter(is_used).copied().collect();
+        let at_once = used.len() <= self.limits.nodes_per_frame as usize;
+        // The coarsest nodes are always drawn, so they keep their places.
+        let stays = |node: &Node| node.level == self.grid.top || at_once && used.contains(node);
+        let (again, gone): (Vec<Node>, Vec<Node>) = stale.into_iter().partition(stays);
+        for node in gone {
+            self.free.extend(self.residents.remove(&node).map(|resident| resident.slot));
+        }
+        self.again.extend(again);
+        // Bounds of what coarser nodes lack have changed, too.
+        let all: Vec<Node> = self.residents.keys().copied().collect();
+        self.find_facts(&all);
+        self.are_bounds_changed = true;
+        Ok(())
+    }
+
+    /// Makes nodes again whose heights have changed, in their places. Until facts about them arrive, the old ones count.
+    fn make_again(&mut self) {
+        let most = self.limits.nodes_per_frame as usize;
+        let again = std::mem::take(&mut self.again);
+        for node in again {
+            if self.new.len() >= most {
+                self.again.insert(node);
+            } else if let Some(resident) = self.residents.get_mut(&node) {
+                (resident.made, resident.used, resident.found) = (self.frame, self.frame, None);
+                self.new.push(NewNode { node, slot: resident.slot, elevation: None });
+            }
+        }
+    }
+
+    /// Gives a node a place in the pool, and makes it in this frame. Leaves it out if its heights are on their way, or if all places are
+    /// in use.
+    ///
+    /// # Errors
+    /// Those of the elevation map's source.
+    fn admit(&mut self, node: Node) -> Result<(), Error> {
+        let elevation = match self.given_to(node)? {
+            Elevated::NotYet => {
+                self.statistics.awaited += 1;
+                return Ok(());
+            }
+            Elevated::Not => None,
+            Elevated::By(given) => Some(given),
+        };
         if self.free.is_empty() {
             // Siblings leave together: without one of them, the others cannot be drawn.
             let unused = self.residents.iter().filter(|(_, resident)| resident.used < self.frame);
-            let (oldest, _) = unused.min_by_key(|(node, resident)| (resident.used, **node))?;
-            let family = match oldest.level == self.grid.top {
-                true => vec![*oldest],
-                false => oldest.parent().children().to_vec(),
+            let oldest = unused.min_by_key(|(node, resident)| (resident.used, **node)).map(|(node, _)| *node);
+            let family = match oldest {
+                None => Vec::new(),
+                Some(oldest) if oldest.level == self.grid.top => vec![oldest],
+                Some(oldest) => oldest.parent().children().to_vec(),
             };
             let left = family.iter().filter_map(|node| self.residents.remove(node));
             self.free.extend(left.map(|resident| resident.slot));
         }
-        let slot = self.free.pop()?;
-        self.residents.insert(node, Resident { slot, used: self.frame, made: self.frame, facts: None });
-        Some(NewNode { node, slot })
+        let Some(slot) = self.free.pop() else {
+            self.statistics.refused += 1;
+            return Ok(());
+        };
+        let beyond = elevation.as_ref().map_or(Beyond::Generated, |given| given.beyond);
+        let resident =
+            Resident { slot, used: self.frame, made: self.frame, beyond, found: None, facts: None };
+        self.residents.insert(node, resident);
+        self.new.push(NewNode { node, slot, elevation });
+        Ok(())
+    }
+
+    /// What the elevation map gives to a node.
+    fn given_to(&self, node: Node) -> Result<Elevated, Error> {
+        let Some(map) = &self.elevation else { return Ok(Elevated::Not) };
+        let region = self.grid.region_of(node);
+        if !map.reaches(region) {
+            return Ok(Elevated::Not);
+        }
+        let heights = map.heights(self.pool.given_region(self.config(), node))?;
+        let beyond = map.beyond(self.config(), region.coarser, self.grid.cells_of(node))?;
+        Ok(match (heights, beyond) {
+            (Some(heights), Some(beyond)) => {
+                Elevated::By(NodeElevation { heights: Arc::new(heights), beyond })
+            }
+            _ => Elevated::NotYet,
+        })
     }
 
     /// Admits the nodes that the frame makes: roots first, then the children that views miss. Coarser nodes come first, since finer ones
     /// cannot be drawn without them; of one level, the nearest.
-    fn admit_missing(&mut self, missing: &[Node], eyes: &[DVec3]) {
+    fn admit_missing(&mut self, missing: &[Node], eyes: &[DVec3]) -> Result<(), Error> {
         let distance = |node: &Node| {
             let [low, high] = self.node_box(*node);
             let to = |eye: &DVec3| eye.distance(eye.clamp(low, high));
@@ -463,12 +608,10 @@ impl Endless {
             let absent: Vec<Node> =
                 parent.children().into_iter().filter(|node| !self.residents.contains_key(node)).collect();
             for node in absent {
-                match self.admit(node) {
-                    Some(new) => self.new.push(new),
-                    None => self.statistics.refused += 1,
-                }
+                self.admit(node)?;
             }
         }
+        Ok(())
     }
 
     /// The limit of a node's vertices: the displacement at which the next coarser level is allowed, or more if the node itself is
@@ -503,11 +646,15 @@ impl Endless {
     }
 
     /// Chooses what the views of a frame draw, and what the frame makes. Returns the instances that are placed anew.
-    fn choose(&mut self, views: &[SelectView], fraction: f32) -> Vec<Node> {
+    fn choose(&mut self, views: &[SelectView], fraction: f32) -> Result<Vec<Node>, Error> {
         let views = &views.iter().map(with_pixels).collect::<Vec<_>>()[..];
         self.frame += 1;
         self.new.clear();
         let mut moved = self.arrive();
+        if std::mem::take(&mut self.are_bounds_changed) {
+            moved = self.residents.keys().copied().collect();
+        }
+        self.make_again();
         let eyes: Vec<DVec3> = (views.iter())
             .flat_map(|view| {
                 let corner = Placement::corner(view.cell.into());
@@ -515,15 +662,12 @@ impl Endless {
             })
             .collect();
         let roots = self.roots(&eyes);
-        self.statistics.refused = 0;
+        (self.statistics.refused, self.statistics.awaited) = (0, 0);
         for root in &roots {
             match self.residents.get_mut(root) {
                 Some(resident) => resident.used = self.frame,
                 // The roots of one camera fit the smallest limit. Those of many may have to wait.
-                None if self.new.len() < self.limits.nodes_per_frame as usize => match self.admit(*root) {
-                    Some(new) => self.new.push(new),
-                    None => self.statistics.refused += 1,
-                },
+                None if self.new.len() < self.limits.nodes_per_frame as usize => self.admit(*root)?,
                 None => {}
             }
         }
@@ -546,7 +690,10 @@ impl Endless {
                 }
             }
             // A node without facts may have to be refined.
-            let is_unknown = |leaf: &&Leaf| leaf.node.level > 0 && self.facts(leaf.node).is_none();
+            let is_unknown = |leaf: &&Leaf| {
+                leaf.node.level > 0 && self.residents.get(&leaf.node).is_none_or(|own| own.found.is_none())
+                    || self.again.contains(&leaf.node)
+            };
             unknown += cover.leaves.iter().filter(is_unknown).count();
             for leaf in &cover.leaves {
                 levels[leaf.node.level as usize] += 1;
@@ -558,8 +705,8 @@ impl Endless {
         missing.sort_unstable();
         missing.dedup();
         self.retune(missing.len());
-        self.admit_missing(&missing, &eyes);
-        self.admit_missing(&soon, &eyes);
+        self.admit_missing(&missing, &eyes)?;
+        self.admit_missing(&soon, &eyes)?;
         *self.tables.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = tables;
         moved.extend(self.new.iter().map(|new| new.node));
         let open = (wanted - split) + unknown;
@@ -571,7 +718,7 @@ impl Endless {
             ready: if open == 0 { 1.0 } else { (split as f32 / (split + open) as f32).min(0.999) },
             ..self.statistics
         };
-        moved
+        Ok(moved)
     }
 
     /// Makes levels coarser while the nodes that are needed exceed the memory, and finer again when there is room.
@@ -592,6 +739,7 @@ impl Endless {
         self.lod_bias = 1.0;
         self.free = (0..self.statistics.capacity as u32).rev().collect();
         self.new.clear();
+        self.again.clear();
     }
 }
 
@@ -600,6 +748,12 @@ fn with_pixels(view: &SelectView) -> SelectView {
     let mut view = *view;
     view.cameras.iter_mut().for_each(|camera| camera.pixels = camera.pixels.max(LEAST_PIXELS));
     view
+}
+
+/// Refuses injected heights beside an elevation map.
+fn check_features(recipe: &Recipe, has_map: bool) -> Result<(), InputError> {
+    let bound = || "must be empty where an elevation map is given: change the map";
+    InputError::check(recipe.features.is_empty() || !has_map, "features.len", recipe.features.len(), bound)
 }
 
 fn check_holes(holes: &[TerrainHole]) -> Result<(), InputError> {
@@ -627,13 +781,31 @@ fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
     OUTSIDE * LodCamera { ahead: towards / distance, ..*camera }.allows(center, radius)
 }
 
-/// The facts of a node, from what the device found.
-fn facts_of(config: &TerrainConfig, grid: Grid, node: Node, found: &NodeFacts) -> Facts {
-    let second = 2 * i64::from(found.second_difference);
-    let deviation = i64::from(found.deviation.max(if node.level > 0 { found.stitched } else { 0 }));
-    let below = remainder(config, grid.coarser(node.level), second);
+/// The facts of a node of a level, from what the device found and what lies below. `injected` bounds what finer injected heights
+/// change.
+fn facts_of(
+    config: &TerrainConfig,
+    grid: Grid,
+    level: u32,
+    (FoundFacts { own, generated }, beyond): (&FoundFacts, Beyond),
+    injected: i64,
+) -> Facts {
+    let below =
+        |facts: &NodeFacts| remainder(config, grid.coarser(level), 2 * i64::from(facts.second_difference));
+    // Without the map, the region would be bounded by its generated heights.
+    let without = generated.as_ref().map_or(0, below);
+    let below = match beyond {
+        Beyond::Generated => below(own),
+        Beyond::Map(distance) => without.max(distance),
+        Beyond::Further(distance) => without + distance,
+    };
+    let below = below + injected;
+    // Smooth interpolation is linear only where no height is clamped.
+    let largest = i64::from(own.lowest.unsigned_abs().max(own.highest.unsigned_abs()));
+    let below = if largest + below > HEIGHT_LIMIT { 2 * HEIGHT_LIMIT } else { below };
+    let deviation = i64::from(own.deviation.max(if level > 0 { own.stitched } else { 0 }));
     let world = |height: i64| height as f64 / HEIGHT_ONE;
-    let heights = [i64::from(found.lowest) - below, i64::from(found.highest) + below].map(world);
+    let heights = [i64::from(own.lowest) - below, i64::from(own.highest) + below].map(world);
     Facts { heights, error: (world(deviation + below) as f32).next_up() }
 }
 
@@ -661,7 +833,7 @@ impl ObjectKind for Endless {
         let MakeOn { gpu, layouts, .. } = target;
         Box::pin(async move {
             let capacity = self.statistics.capacity;
-            let pool = Pool::new(gpu, &self.recipe, self.grid, (capacity, self.holes.is_some()))?;
+            let pool = Pool::new(gpu, &self.recipe, self.grid, self.size)?;
             let (chunks, _) = drawn(gpu, layouts, &self.source, (&pool, self.grid, capacity))?;
             Ok(OnDevice { chunks, other: Box::new(pool) })
         })
@@ -695,8 +867,8 @@ impl ObjectKind for Endless {
     ) -> Result<Provided, Error> {
         let asked = seen.views.iter().flat_map(SelectView::cameras).map(|camera| camera.pixels);
         self.is_bounded = asked.fold(f32::INFINITY, f32::min) >= LEAST_PIXELS;
-        let moved = self.choose(seen.views, seen.object.metric_scale * self.lod_bias);
-        self.pool.make(gpu, &self.recipe.config, &self.new)?;
+        let moved = self.choose(seen.views, seen.object.metric_scale * self.lod_bias)?;
+        self.pool.make(gpu, &self.recipe, &self.new)?;
         let placed = moved.into_iter().filter_map(|node| Some((node, self.residents.get(&node)?.slot)));
         let placed = placed.map(|(node, slot)| {
             let (placement, sphere) = self.placed(node)?;
@@ -711,14 +883,14 @@ impl ObjectKind for Endless {
         if std::mem::take(&mut self.are_holes_changed) {
             let finest = self.residents.iter().filter(|(node, _)| node.level == 0);
             for (node, Resident { slot, .. }) in finest {
-                self.pool.stage_patch(staged, config, NewNode { node: *node, slot: *slot }, holes)?;
+                self.pool.stage_patch(staged, config, (*node, *slot), holes)?;
             }
         }
-        self.pool.stage(staged, config, &self.new, holes)
+        self.pool.stage(staged, &self.recipe, holes)
     }
 
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        let reads = self.residents.values().any(|resident| resident.facts.is_none());
+        let reads = self.residents.values().any(|resident| resident.found.is_none());
         self.pool.record(encoder, self.frame, reads);
     }
 

@@ -1,19 +1,24 @@
 //! The nodes of an endless terrain on the device: tiles of heights in a pool of fixed size, and the jobs that make them.
 
+use std::ops::RangeInclusive;
+
 use super::TerrainHole;
+use super::elevation::NodeElevation;
 use crate::gpu::{Buffer, Gpu, Job, ReadbackRing, Staged, Upload as _};
 use crate::scene::FRAMES_IN_FLIGHT;
 use crate::shared::render::scene_terrain::TerrainPatch;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::cover::TILES_PERIOD;
-use crate::terrain::features::Features;
+use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::{HeightBuffers, HeightScratch};
+use crate::terrain::levels::{GivenHeights, lattice_region};
 use crate::terrain::node::{NODE_FACTS, NODE_MARGIN, NodeBuffers, NodeFacts, NodePass, NodeShape};
 use crate::terrain::quadtree::Node;
 use crate::terrain::recipe::Recipe;
 use crate::terrain::regions::{RegionJob, RegionPass};
 use crate::terrain::remainder::remainder_reach;
-use crate::terrain::window::Regions;
+use crate::terrain::replace::{ReplaceBuffers, ReplacePass};
+use crate::terrain::window::{Region, Regions};
 use crate::{Error, InputError};
 
 /// Number of nodes in a batch.
@@ -22,6 +27,10 @@ pub(super) const BATCH: usize = 4;
 /// Largest number of levels by which the heights from which a node is made are finer than the node. The node's deviation from them
 /// is exact; what lies below is bounded.
 const MOST_FINER: u32 = 3;
+
+/// The same with an elevation map, whose tiles may have to arrive over a network: the fewest for which the bound has the heights that
+/// it needs around a node.
+const MOST_FINER_WITH_MAP: u32 = 2;
 
 /// Largest number of cells along an edge of a node's finer heights, unless the node itself has more.
 const MOST_CELLS: u32 = 512;
@@ -42,28 +51,80 @@ pub(super) struct Pool {
     ring: ReadbackRing<u64>,
     grid: Grid,
     generator: RegionPass,
+    /// The mode in which the generator injects features.
+    injection: Option<FeatureMode>,
     pass: NodePass,
     heights: Buffer<i32>,
     scratch: HeightScratch,
-    /// The jobs of each level, one for each of a frame's batches of this level.
-    jobs: Vec<Vec<BatchJob>>,
-    /// Index of the job of each batch of the frame: its level and its number.
-    batches: Vec<[usize; 2]>,
+    /// Replaces generated heights by those of a map.
+    replace: ReplacePass,
+    /// Number of levels by which the elevation map is coarser than the terrain; `None` without a map.
+    map: Option<u32>,
+    capacity: usize,
+    /// The jobs of each level, one for each of a frame's batches of this level: without heights of a map, and with them.
+    jobs: [Vec<Vec<BatchJob>>; 2],
+    /// The batches of the frame.
+    batches: Vec<Batch>,
+}
+
+/// Nodes of one level that a frame makes, at most [`BATCH`].
+#[derive(Debug, Clone)]
+struct Batch {
+    /// Whether a map gives heights of the nodes.
+    is_given: bool,
+    level: usize,
+    /// Number of the job among those of the level.
+    job: usize,
+    nodes: Vec<NewNode>,
+}
+
+/// What a pool has memory for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PoolSize {
+    /// Number of tiles.
+    pub capacity: usize,
+    pub has_holes: bool,
+    /// Number of levels by which the elevation map is coarser than the terrain; `None` without a map.
+    pub map: Option<u32>,
 }
 
 /// The jobs that make up to [`BATCH`] nodes of one level.
 #[derive(Debug)]
 struct BatchJob {
     heights: RegionJob,
+    /// Number of features for which there is room.
+    features: usize,
+    given: Option<GivenJob>,
     slots: Buffer<u32>,
     nodes: Job,
 }
 
+/// Replaces heights of regions by those of a map, on the regions' own lattice.
+#[derive(Debug)]
+struct GivenJob {
+    /// Finds the facts of the generated heights.
+    generated: Job,
+    /// Slots of these facts.
+    slots: Buffer<u32>,
+    heights: Buffer<i32>,
+    replace: Job,
+}
+
 /// A node to make, and its tile.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct NewNode {
     pub node: Node,
     pub slot: u32,
+    /// What a map gives to the node; `None` where no map reaches.
+    pub elevation: Option<NodeElevation>,
+}
+
+/// What the device found about a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct FoundFacts {
+    pub own: NodeFacts,
+    /// The facts of the heights that are generated without the map, where they count.
+    pub generated: Option<NodeFacts>,
 }
 
 /// The nodes into which a terrain is divided.
@@ -73,6 +134,8 @@ pub(super) struct Grid {
     pub cells: u32,
     /// Level of the coarsest nodes: they cover one cell of the base lattice.
     pub top: u32,
+    /// Largest number of levels by which the heights from which nodes are made are finer.
+    most_finer: u32,
 }
 
 impl Grid {
@@ -80,7 +143,7 @@ impl Grid {
     ///
     /// # Errors
     /// [`InputError`] for a size that is not 2^n + 1, out of bounds, or larger than a cell of the base lattice.
-    pub fn new(config: &TerrainConfig, node_size: u32) -> Result<Self, InputError> {
+    pub fn new(config: &TerrainConfig, node_size: u32, has_map: bool) -> Result<Self, InputError> {
         let cells = node_size.saturating_sub(1);
         let is_size = cells.is_power_of_two() && (8..=256).contains(&cells);
         InputError::check(
@@ -97,12 +160,13 @@ impl Grid {
             )
         };
         InputError::check(cells.ilog2() <= most, "node_size", node_size, bound)?;
-        Ok(Self { cells, top: most - cells.ilog2() })
+        let most_finer = if has_map { MOST_FINER_WITH_MAP } else { MOST_FINER };
+        Ok(Self { cells, top: most - cells.ilog2(), most_finer })
     }
 
     /// The shape of the nodes of a level. The heights from which they are made are up to [`MOST_FINER`] levels finer.
     pub fn shape(self, level: u32) -> NodeShape {
-        let finer = (MOST_CELLS / self.cells).max(1).ilog2().min(MOST_FINER).min(level);
+        let finer = (MOST_CELLS / self.cells).max(1).ilog2().min(self.most_finer).min(level);
         NodeShape { size: self.cells + 1, finer }
     }
 
@@ -110,6 +174,18 @@ impl Grid {
     pub fn first_of(self, node: Node) -> [i64; 2] {
         let (cells, finer) = (i64::from(self.cells), self.shape(node.level).finer);
         node.at.map(|at| (i64::from(at) * cells - i64::from(NODE_MARGIN)) << finer)
+    }
+
+    /// The region of finer heights of a node.
+    pub fn region_of(self, node: Node) -> Region {
+        let width = self.shape(node.level).region_width();
+        Region { first: self.first_of(node), width, coarser: self.coarser(node.level) }
+    }
+
+    /// Columns and rows of the cells of a node's region, without the margin.
+    pub fn cells_of(self, node: Node) -> [RangeInclusive<i64>; 2] {
+        let cells = i64::from(self.cells) << self.shape(node.level).finer;
+        node.at.map(|at| i64::from(at) * cells..=(i64::from(at) + 1) * cells - 1)
     }
 
     /// Number of words of a node's holes.
@@ -124,21 +200,18 @@ impl Grid {
 }
 
 impl Pool {
-    /// Allocates a pool of `capacity` tiles, with memory for holes if `has_holes`.
+    /// Allocates a pool of `capacity` tiles, with memory for holes if `has_holes`. `map` is the number of levels by which an elevation
+    /// map is coarser than the terrain.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub fn new(
-        gpu: &Gpu,
-        recipe: &Recipe,
-        grid: Grid,
-        (capacity, has_holes): (usize, bool),
-    ) -> Result<Self, Error> {
-        let config = &recipe.config;
+    pub fn new(gpu: &Gpu, recipe: &Recipe, grid: Grid, size: PoolSize) -> Result<Self, Error> {
+        let (config, PoolSize { capacity, has_holes, map }) = (&recipe.config, size);
         let width = (0..=grid.top).map(|level| grid.shape(level).region_width()).max().unwrap_or(0);
         // The largest scratch is that of the widest regions with the most subdivisions.
         let regions = Regions { count: BATCH as u32, width, coarser: 0 };
-        let words = capacity * NODE_FACTS as usize;
+        let rows = if map.is_some() { 2 * capacity } else { capacity };
+        let words = rows * NODE_FACTS as usize;
         Ok(Self {
             tiles: Buffer::new(
                 gpu,
@@ -153,22 +226,29 @@ impl Pool {
             )?,
             facts: Buffer::new(gpu, "facts of nodes", words)?,
             ring: ReadbackRing::new(gpu, "facts of nodes", FRAMES_IN_FLIGHT, 4 * words as u64)?,
-            generator: RegionPass::new(gpu, config, None)?,
+            generator: RegionPass::new(gpu, config, recipe.features.injection())?,
+            injection: recipe.features.injection(),
             pass: NodePass::new(gpu)?,
             heights: Buffer::new(gpu, "finer heights", BATCH * (width as usize).pow(2))?,
             scratch: HeightScratch::for_regions(gpu, config, regions)?,
+            replace: ReplacePass::new(gpu)?,
+            map,
+            capacity,
             grid,
-            jobs: (0..=grid.top).map(|_| Vec::new()).collect(),
+            jobs: [(); 2].map(|()| (0..=grid.top).map(|_| Vec::new()).collect()),
             batches: Vec::new(),
         })
     }
 
     /// The facts of all tiles, and the number of the frame after which they were copied; `None` if none have arrived.
-    pub fn arrived(&mut self) -> Option<(u64, Vec<Option<NodeFacts>>)> {
+    pub fn arrived(&mut self) -> Option<(u64, Vec<Option<FoundFacts>>)> {
         let (frame, bytes) = self.ring.take()?;
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
-        let facts = words.as_chunks::<{ NODE_FACTS as usize }>().0.iter();
-        Some((frame, facts.map(|words| NodeFacts::from_words(*words)).collect()))
+        let rows = words.as_chunks::<{ NODE_FACTS as usize }>().0;
+        let facts = |slot: usize| NodeFacts::from_words(*rows.get(slot)?);
+        let found = (0..self.capacity)
+            .map(|slot| Some(FoundFacts { own: facts(slot)?, generated: facts(self.capacity + slot) }));
+        Some((frame, found.collect()))
     }
 
     /// Forgets readbacks that have not arrived.
@@ -184,30 +264,71 @@ impl Pool {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub fn make(&mut self, gpu: &Gpu, config: &TerrainConfig, new: &[NewNode]) -> Result<(), Error> {
+    pub fn make(&mut self, gpu: &Gpu, recipe: &Recipe, new: &[NewNode]) -> Result<(), Error> {
         self.batches.clear();
-        for level in 0..self.jobs.len() {
-            let count = new.iter().filter(|new| new.node.level as usize == level).count().div_ceil(BATCH);
-            while self.jobs[level].len() < count {
-                let job = self.job(gpu, config, level as u32)?;
-                self.jobs[level].push(job);
+        let Recipe { config, features, .. } = recipe;
+        if self.injection != features.injection() {
+            self.injection = features.injection();
+            self.generator = RegionPass::new(gpu, config, self.injection)?;
+            self.jobs.iter_mut().flatten().for_each(Vec::clear);
+        }
+        for (level, is_given) in
+            (0..=self.grid.top as usize).flat_map(|level| [(level, false), (level, true)])
+        {
+            let is_own =
+                |new: &&NewNode| new.node.level as usize == level && new.elevation.is_some() == is_given;
+            let own: Vec<NewNode> = new.iter().filter(is_own).cloned().collect();
+            for (job, nodes) in own.chunks(BATCH).enumerate() {
+                let kind = usize::from(is_given);
+                if self.jobs[kind][level].len() <= job {
+                    let made = self.job(gpu, config, (level as u32, is_given), 0)?;
+                    self.jobs[kind][level].push(made);
+                }
+                let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
+                let needed = self.jobs[kind][level][job].heights.feature_count(&firsts, features);
+                if needed > self.jobs[kind][level][job].features {
+                    let room = needed.next_power_of_two();
+                    self.jobs[kind][level][job] = self.job(gpu, config, (level as u32, is_given), room)?;
+                }
+                self.batches.push(Batch { is_given, level, job, nodes: nodes.to_vec() });
             }
-            self.batches.extend((0..count).map(|number| [level, number]));
         }
         Ok(())
     }
 
-    fn job(&self, gpu: &Gpu, config: &TerrainConfig, level: u32) -> Result<BatchJob, Error> {
+    fn job(
+        &self,
+        gpu: &Gpu,
+        config: &TerrainConfig,
+        (level, is_given): (u32, bool),
+        features: usize,
+    ) -> Result<BatchJob, Error> {
         let shape = self.grid.shape(level);
-        let (width, coarser) = (shape.region_width(), self.grid.coarser(level));
-        let regions = Regions { count: BATCH as u32, width, coarser };
+        let (count, width, coarser) = (BATCH as u32, shape.region_width(), self.grid.coarser(level));
+        let regions = Regions { count, width, coarser };
         let output = HeightBuffers { output: &self.heights, scratch: &self.scratch };
         let slots = Buffer::new(gpu, "slots of nodes", BATCH)?;
-        let buffers =
-            NodeBuffers { heights: &self.heights, slots: &slots, tiles: &self.tiles, facts: &self.facts };
-        let nodes = self.pass.prepare(gpu, shape, BATCH as u32, buffers)?;
-        let heights = self.generator.prepare_regions(gpu, config, regions, 0, output)?;
-        Ok(BatchJob { heights, slots, nodes })
+        let facts_of = |slots: &Buffer<u32>| {
+            let (heights, tiles, facts) = (&self.heights, &self.tiles, &self.facts);
+            self.pass.prepare(gpu, shape, count, NodeBuffers { heights, slots, tiles, facts })
+        };
+        let map = self.map.filter(|_| is_given);
+        // A map that is coarser than the regions gives heights of a coarser lattice, from which theirs follow.
+        let lattice = map.filter(|map| *map > coarser);
+        let lattice = lattice.map(|coarser| GivenHeights { pass: &self.replace, coarser });
+        let heights = self.generator.prepare_given(gpu, config, regions, features, output, lattice)?;
+        let given = match map.filter(|map| *map <= coarser) {
+            None => None,
+            Some(_) => {
+                let slots = Buffer::new(gpu, "slots of generated heights", BATCH)?;
+                let heights = Buffer::new(gpu, "given heights", self.heights.len())?;
+                let buffers = ReplaceBuffers { given: &heights, heights: &self.heights };
+                let replace = self.replace.prepare(gpu, width, count, buffers)?;
+                Some(GivenJob { generated: facts_of(&slots)?, slots, heights, replace })
+            }
+        };
+        let nodes = facts_of(&slots)?;
+        Ok(BatchJob { heights, features, given, slots, nodes })
     }
 
     /// Stages what the jobs of the frame read, and the patches of new nodes.
@@ -217,27 +338,47 @@ impl Pool {
     pub fn stage(
         &self,
         staged: &mut Staged,
-        config: &TerrainConfig,
-        new: &[NewNode],
+        Recipe { config, features, .. }: &Recipe,
         holes: &[TerrainHole],
     ) -> Result<(), Error> {
-        for level in 0..self.jobs.len() {
-            let own: Vec<NewNode> =
-                new.iter().filter(|new| new.node.level as usize == level).copied().collect();
-            for (job, batch) in self.jobs[level].iter().zip(own.chunks(BATCH)) {
-                let mut slots = [NO_SLOT; BATCH];
-                slots.iter_mut().zip(batch).for_each(|(slot, new)| *slot = new.slot);
-                staged.elements(&job.slots, 0, &slots)?;
-                let firsts: Vec<[i64; 2]> = batch.iter().map(|new| self.grid.first_of(new.node)).collect();
-                job.heights.stage_regions(staged, &firsts, &Features::default())?;
+        for Batch { is_given, level, job, nodes } in &self.batches {
+            let job = &self.jobs[usize::from(*is_given)][*level][*job];
+            let (mut slots, mut generated) = ([NO_SLOT; BATCH], [NO_SLOT; BATCH]);
+            for ((slot, generated), new) in slots.iter_mut().zip(&mut generated).zip(nodes) {
+                (*slot, *generated) = (new.slot, self.capacity as u32 + new.slot);
+            }
+            staged.elements(&job.slots, 0, &slots)?;
+            let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
+            job.heights.stage_regions(staged, &firsts, features)?;
+            if let Some(given) = &job.given {
+                staged.elements(&given.slots, 0, &generated)?;
+            }
+            for (number, new) in nodes.iter().enumerate() {
+                let Some(NodeElevation { heights, .. }) = &new.elevation else { continue };
+                match &job.given {
+                    Some(given) => staged.elements(&given.heights, number * heights.len(), heights)?,
+                    None => job.heights.stage_given(staged, number, heights)?,
+                }
+            }
+            for new in nodes {
+                self.stage_patch(staged, config, (new.node, new.slot), holes)?;
+                let none = [0; NODE_FACTS as usize];
+                for row in [Some(new.slot as usize), self.map.map(|_| self.capacity + new.slot as usize)] {
+                    let Some(row) = row else { continue };
+                    staged.elements(&self.facts, row * NODE_FACTS as usize, &none)?;
+                }
             }
         }
-        for new in new {
-            self.stage_patch(staged, config, *new, holes)?;
-            let none = [0; NODE_FACTS as usize];
-            staged.elements(&self.facts, new.slot as usize * NODE_FACTS as usize, &none)?;
-        }
         Ok(())
+    }
+
+    /// The region whose heights a map gives to a node.
+    pub fn given_region(&self, config: &TerrainConfig, node: Node) -> Region {
+        let own = self.grid.region_of(node);
+        match self.map.filter(|map| *map > own.coarser) {
+            Some(map) => lattice_region(config, own, map),
+            None => own,
+        }
     }
 
     /// Stages the patch of a node, and its holes.
@@ -248,23 +389,27 @@ impl Pool {
         &self,
         staged: &mut Staged,
         config: &TerrainConfig,
-        new: NewNode,
+        (node, slot): (Node, u32),
         holes: &[TerrainHole],
     ) -> Result<(), Error> {
-        let mut patch = patch_of(config, self.grid, new);
-        if let Some(words) = hole_bits(config, self.grid, new.node, holes) {
-            let first = new.slot as usize * words.len();
+        let mut patch = patch_of(config, self.grid, (node, slot));
+        if let Some(words) = hole_bits(config, self.grid, node, holes) {
+            let first = slot as usize * words.len();
             staged.elements(&self.holes, first, &words)?;
             patch.holes = first as u32 + 1;
         }
-        Ok(staged.elements(&self.patches, new.slot as usize, &[patch])?)
+        Ok(staged.elements(&self.patches, slot as usize, &[patch])?)
     }
 
     /// Records the jobs of the frame; if `reads_facts`, also a copy of all facts to the host.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64, reads_facts: bool) {
-        for [level, number] in self.batches.drain(..) {
-            let job = &self.jobs[level][number];
+        for Batch { is_given, level, job, .. } in self.batches.drain(..) {
+            let job = &self.jobs[usize::from(is_given)][level][job];
             job.heights.record(encoder);
+            if let Some(given) = &job.given {
+                given.generated.record(encoder);
+                given.replace.record(encoder);
+            }
             job.nodes.record(encoder);
         }
         if reads_facts {
@@ -277,7 +422,7 @@ impl Pool {
 }
 
 /// A node in the format of the shader that draws it.
-fn patch_of(config: &TerrainConfig, grid: Grid, NewNode { node, slot }: NewNode) -> TerrainPatch {
+fn patch_of(config: &TerrainConfig, grid: Grid, (node, slot): (Node, u32)) -> TerrainPatch {
     let edge = (grid.cells as i32) << node.level;
     let tiles = config.tiles_per_patch() / f64::from(config.patch_size - 1) * f64::from(edge);
     TerrainPatch {
@@ -327,9 +472,6 @@ pub(super) fn check(recipe: &Recipe, grid: Grid) -> Result<(), InputError> {
     if grid.top > finer && remainder_reach(&recipe.config) >= NODE_MARGIN << finer {
         let bound = "must be at most 129 where interpolation is smooth";
         return Err(InputError::new("node_size", grid.cells + 1, bound));
-    }
-    if !recipe.features.is_empty() {
-        return refused("features", "must not be given where terrain is endless");
     }
     if recipe.apron(0) > 0 {
         return refused("recipe", "must have no despiking and no erosion where terrain is endless");

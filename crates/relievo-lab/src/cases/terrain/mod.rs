@@ -11,6 +11,7 @@ pub mod node;
 pub mod noise;
 pub mod normals;
 pub mod pad;
+pub mod replace;
 pub mod smooth;
 pub mod thermal;
 pub mod wrap;
