@@ -30,6 +30,7 @@ pub mod materials;
 pub mod mesh;
 pub mod morph;
 pub mod node;
+pub mod node_normals;
 pub mod noise;
 pub mod normals;
 pub mod pad;

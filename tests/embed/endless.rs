@@ -13,7 +13,7 @@ use relievo::scene::{
     TerrainSource, View,
 };
 
-use crate::harness::gpu;
+use crate::harness::{Difference, gpu};
 use crate::raw::Raw;
 
 /// Ground that rises and falls by some hundred units over some kilometres.
@@ -553,4 +553,23 @@ fn the_ground_is_within_a_pixel_of_the_finest_heights() {
         assert!(most <= 1.0 + ROUNDING && most > 0.05, "{most}");
         assert!(seen > 5_000 && nodes.nodes <= nodes.capacity, "{seen} {nodes:?}");
     }
+}
+
+/// With normals of twice the nodes' resolution, a coarse picture is closer to the finest one.
+#[test]
+fn finer_normals_show_finer_heights() {
+    let shown = |pixels: f32, finer_normals: bool| {
+        let config = TerrainConfig { scale_factor: 500.0, ..config() };
+        let limits = EndlessLimits { nodes_per_frame: 128, finer_normals, ..EndlessLimits::default() };
+        let mut world = World::new(config, limits, [160, 90]);
+        world.view = world.scene.view(Quality::pixels(pixels)).expect("made");
+        let camera = world.above([800.0, 2_000.0], 60.0);
+        world.view.set(camera).expect("valid");
+        world.settle();
+        picture(&mut world)
+    };
+    let full = shown(0.25, true);
+    let [plain, finer] = [false, true].map(|finer| Difference::of(&shown(2.0, finer), &full, 3));
+    println!("{plain:?} {finer:?}");
+    assert!(finer.outliers < 0.6 * plain.outliers && finer.flip < 0.75 * plain.flip, "{plain:?} {finer:?}");
 }

@@ -79,6 +79,8 @@ struct TerrainParams {
     variation: f32,
     // Number of the chunk's first patch in the object.
     first_patch: u32,
+    // Number of normals along an edge of a node, twice the resolution of its samples; 0 for terrain without such normals.
+    normals_width: u32,
 }
 
 // A patch of a terrain.
@@ -115,6 +117,9 @@ struct TerrainPatch {
 @group(2) @binding(5) var texture_sampler: sampler;
 // One bit per vertex of a patch with holes, row by row, from a whole word on: whether triangles at this vertex are left out.
 @group(2) @binding(6) var<storage, read> holes: array<u32>;
+
+// Normals of all nodes but those of level 0, row by row: x in the low half of a word and z in the high half.
+@group(2) @binding(7) var<storage, read> normals: array<u32>;
 
 // Height gradient of a patch at the sample `at`, from samples `reach` apart, as differences over two samples.
 fn gradient_of(center: u32, reach: u32) -> vec2<f32> {
@@ -172,8 +177,9 @@ fn hole_at(patch_of: TerrainPatch, at: vec2<u32>) -> f32 {
 }
 
 // Places a vertex of a patch. A sample gets bit-identical positions in all patches, so that patches that share an edge leave no
-// crack. Values of the result: barycentric coordinates (xyz: 1 at one corner of each triangle, 0 at the others), and the height
-// in world units (w).
+// crack. Values of the result: column and row in the patch, how far the vertex has moved onto the next coarser level, and the height in
+// world units (w). For the wireframe, xyz are barycentric coordinates: 1 at one corner of each triangle, 0 at the others. Words: the
+// patch's window and level.
 fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let patch_of = patches[instance];
     let is_node = ground.camera_count != 0u;
@@ -187,29 +193,49 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let sample = ground.rest + vec3<f32>(sample_index.x * terrain.spacing, 0.0, sample_index.y * terrain.spacing);
     var height = f32(heights[center]) / 65536.0;
     var gradient = gradient_of(center, 1u);
+    var factor = 0.0;
     if is_node {
-        let factor = morphed(limit_of(node, at), sample + vec3<f32>(0.0, height, 0.0));
+        factor = morphed(limit_of(node, at), sample + vec3<f32>(0.0, height, 0.0));
         let half = coarser_half(at);
         let one = u32(i32(center) + half.y * i32(terrain.in_width) + half.x);
         let other = u32(i32(center) - half.y * i32(terrain.in_width) - half.x);
         let coarser = 0.5 * (f32(heights[one]) / 65536.0 + f32(heights[other]) / 65536.0);
         height = mix(height, coarser, factor);
-        gradient = mix(gradient, 0.5 * (gradient_of(one, 2u) + gradient_of(other, 2u)), factor);
+        // With normals of twice the resolution, a vertex has the gradient that the next coarser level has there.
+        if terrain.normals_width == 0u {
+            gradient = mix(gradient, 0.5 * (gradient_of(one, 2u) + gradient_of(other, 2u)), factor);
+        }
     }
-    // Within a patch, all triangles give a vertex the same corner number, 0 to 2.
-    var values = vec4<f32>(0.0, 0.0, 0.0, height);
-    values[(corner.x + 2u * corner.y) % 3u] = 1.0;
+    var values = vec4<f32>(vec2<f32>(at), factor, height);
+    if WIREFRAME {
+        // Within a patch, all triangles give a vertex the same corner number, 0 to 2.
+        values = vec4<f32>(0.0, 0.0, 0.0, height);
+        values[(corner.x + 2u * corner.y) % 3u] = 1.0;
+    }
     let steps = f32(1u << patch_of.level);
     return SceneVertex(
         sample + vec3<f32>(0.0, height, 0.0), gradient_normal(gradient, steps * terrain.run),
         vec4<f32>(1.0, 0.0, 0.0, 1.0),
         vec4<f32>(patch_of.uv + steps * vec2<f32>(at) * terrain.tiling, hole_at(patch_of, at), 0.0), values,
-        vec3<u32>(0u), 1.0);
+        vec3<u32>(patch_of.window, patch_of.level, 0u), 1.0);
 }
 
 // Position of a vertex in the last frame: its current position, because the ground does not move.
 fn terrain_last_position(instance: u32, vertex: u32) -> vec3<f32> {
     return terrain_place(instance, vertex).position;
+}
+
+// Unit normal of a node at `at`, in samples from its first vertex, interpolated between its normals.
+fn node_normal(window: u32, at: vec2<f32>) -> vec3<f32> {
+    let width = terrain.normals_width;
+    let place = clamp(2.0 * at, vec2<f32>(0.0), vec2<f32>(f32(width - 1u)));
+    let cell = min(vec2<u32>(place), vec2<u32>(width - 2u));
+    let part = place - vec2<f32>(cell);
+    let first = (window * width + cell.y) * width + cell.x;
+    let north = mix(unpack2x16snorm(normals[first]), unpack2x16snorm(normals[first + 1u]), part.x);
+    let south = mix(unpack2x16snorm(normals[first + width]), unpack2x16snorm(normals[first + width + 1u]), part.x);
+    let along = mix(north, south, part.y);
+    return vec3<f32>(along.x, sqrt(max(1.0 - dot(along, along), 0.0)), along.y);
 }
 
 // Linear colour of the ground at texture coordinates, a height in world units, and a unit normal.
@@ -248,6 +274,9 @@ fn terrain_surface(in: SceneFragment) -> Surface {
         surface.color = LINE_COLOR;
         surface.unlit = vec4<f32>(DARK_COLOR, 1.0 - near);
     } else {
+        if terrain.normals_width != 0u && in.words.y != 0u {
+            surface.normal = normalize(mix(node_normal(in.words.x, in.values.xy), surface.normal, in.values.z));
+        }
         surface.color = ground_color(in.uv.xy, in.values.w, surface.normal);
     }
     // Above 0 in a triangle with a corner in a hole.

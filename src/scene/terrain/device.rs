@@ -111,6 +111,7 @@ fn drawable(
         planes: planes(config.triplanar),
         variation: config.variation as f32,
         first_patch: first as u32,
+        normals_width: 0,
     };
     let patches = Buffer::new(gpu, "patches", fields.count.max(1) as usize)?;
     if !shown.is_empty() {
@@ -123,6 +124,7 @@ fn drawable(
         indices: triangles.clone(),
         holes: Buffer::new(gpu, "no holes", 1)?,
         has_holes: false,
+        normals: Buffer::new(gpu, "no normals", 1)?,
         zones: zones.clone(),
     };
     Ok(TerrainDrawable::new(gpu, layouts, geometry, source.style)?)

@@ -24,6 +24,8 @@ pub(crate) struct TerrainGeometry {
     pub zones: Materials,
     /// Holes of patches, one bit per vertex.
     pub holes: Buffer<u32>,
+    /// Normals of nodes at twice their resolution; read only if `params` says so.
+    pub normals: Buffer<u32>,
     /// Whether any patch may have holes.
     pub has_holes: bool,
 }
@@ -58,6 +60,7 @@ impl TerrainDrawable {
             textures: &geometry.zones.view(),
             texture_sampler: &geometry.zones.sampler,
             holes: geometry.holes.slice(),
+            normals: geometry.normals.slice(),
         };
         let specialization = Specialization::terrain(style, geometry.has_holes);
         Ok(Self { group: group.bind(gpu, &layouts.terrain)?, geometry, specialization })

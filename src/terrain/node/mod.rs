@@ -23,6 +23,11 @@ impl NodeShape {
         self.size + 2 * NODE_MARGIN
     }
 
+    /// Number of normals along an edge of a node: twice the resolution of its samples.
+    pub fn normals_width(self) -> u32 {
+        2 * self.size - 1
+    }
+
     /// Number of samples along an edge of the region of finer heights.
     pub fn region_width(self) -> u32 {
         ((self.tile_width() - 1) << self.finer) + 1

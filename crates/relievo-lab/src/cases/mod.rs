@@ -56,6 +56,7 @@ pub static OPERATIONS: &[Operation] = operations![
     terrain / thermal,
     terrain / hydraulic,
     terrain / node,
+    terrain / node_normals,
     terrain / normals,
     terrain / morph,
     terrain / blend,

@@ -60,6 +60,7 @@ impl Land {
             planes: planes(self.config.triplanar),
             variation: self.config.variation as f32,
             first_patch: 0,
+            normals_width: 0,
         };
         let patch = |(window, patch): (u32, [i32; 2])| TerrainPatch {
             origin: patch.map(|at| at * (size as i32 - 1)),
@@ -79,6 +80,7 @@ impl Land {
             zones,
             holes: Buffer::new(gpu, "holes", 1).expect("allocated"),
             has_holes: false,
+            normals: Buffer::new(gpu, "normals", 1).expect("allocated"),
         };
         let terrain = TerrainDrawable::new(gpu, layouts, geometry, style).expect("bound");
         (terrain, indices.len() as u32)

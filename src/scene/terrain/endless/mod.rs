@@ -74,15 +74,18 @@ pub struct EndlessLimits {
     pub view_distance: Option<f64>,
     /// Largest number of nodes to make in a frame, 16 to 1024. Default: 32.
     pub nodes_per_frame: u32,
-    /// Number of nodes for which there is memory, 256 to 65536. Default: 2048. A node takes 4 · (`node_size` + 4)² bytes.
+    /// Number of nodes for which there is memory, 256 to 65536. Default: 1536. A node takes 4 · (`node_size` + 4)² bytes, and
+    /// 4 · (2 · `node_size` − 1)² bytes more with finer normals. Neither part may exceed the device's storage bindings.
     pub capacity: u32,
     /// Samples along an edge of a node: 2^n + 1, n in 3..=8, at most those between two points of the base lattice. Default: 65.
     pub node_size: u32,
+    /// Whether nodes are shaded with normals of twice their resolution. Default: true.
+    pub finer_normals: bool,
 }
 
 impl Default for EndlessLimits {
     fn default() -> Self {
-        Self { view_distance: None, nodes_per_frame: 32, capacity: 2048, node_size: 65 }
+        Self { view_distance: None, nodes_per_frame: 32, capacity: 1536, node_size: 65, finer_normals: true }
     }
 }
 
@@ -263,8 +266,12 @@ pub(in crate::scene) fn made(
     let capacity = instances.capacity();
     let holes = source.holes.clone();
     check_holes(holes.as_deref().unwrap_or_default())?;
-    let size =
-        PoolSize { capacity, has_holes: holes.is_some(), map: elevation.as_ref().map(Elevation::coarser) };
+    let size = PoolSize {
+        capacity,
+        has_holes: holes.is_some(),
+        has_normals: limits.finer_normals,
+        map: elevation.as_ref().map(Elevation::coarser),
+    };
     let pool = Pool::new(gpu, recipe, grid, size)?;
     let (chunks, draws) = drawn(gpu, layouts, source, (&pool, grid, capacity))?;
     let hidden = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
@@ -324,6 +331,7 @@ fn drawn(
         planes: planes(config.triplanar),
         variation: config.variation as f32,
         first_patch: 0,
+        normals_width: if pool.size.has_normals { grid.shape(0).normals_width() } else { 0 },
     };
     let geometry = TerrainGeometry {
         params: Uniform::new(gpu, "terrain", &params)?,
@@ -332,6 +340,7 @@ fn drawn(
         indices: Buffer::constant(gpu, "triangles of a node", &indices)?,
         zones,
         holes: pool.holes.clone(),
+        normals: pool.normals.clone(),
         has_holes: source.holes.is_some(),
     };
     let drawable = TerrainDrawable::new(gpu, layouts, geometry, source.style)?;

@@ -13,6 +13,7 @@ use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::levels::{GivenHeights, lattice_region};
 use crate::terrain::node::{NODE_FACTS, NODE_MARGIN, NodeBuffers, NodeFacts, NodePass, NodeShape};
+use crate::terrain::node_normals::{NodeNormalsBuffers, NodeNormalsPass};
 use crate::terrain::quadtree::Node;
 use crate::terrain::recipe::Recipe;
 use crate::terrain::regions::{RegionJob, RegionPass};
@@ -47,6 +48,9 @@ pub(super) struct Pool {
     pub patches: Buffer<TerrainPatch>,
     /// Holes of the nodes, one bit per vertex; for terrain that may have holes.
     pub holes: Buffer<u32>,
+    /// Normals of the nodes at twice their resolution; none of those of level 0, which are the finest.
+    pub normals: Buffer<u32>,
+    pub size: PoolSize,
     facts: Buffer<u32>,
     ring: ReadbackRing<u64>,
     grid: Grid,
@@ -54,13 +58,11 @@ pub(super) struct Pool {
     /// The mode in which the generator injects features.
     injection: Option<FeatureMode>,
     pass: NodePass,
+    normals_pass: NodeNormalsPass,
     heights: Buffer<i32>,
     scratch: HeightScratch,
     /// Replaces generated heights by those of a map.
     replace: ReplacePass,
-    /// Number of levels by which the elevation map is coarser than the terrain; `None` without a map.
-    map: Option<u32>,
-    capacity: usize,
     /// The jobs of each level, one for each of a frame's batches of this level: without heights of a map, and with them.
     jobs: [Vec<Vec<BatchJob>>; 2],
     /// The batches of the frame.
@@ -84,6 +86,8 @@ pub(super) struct PoolSize {
     /// Number of tiles.
     pub capacity: usize,
     pub has_holes: bool,
+    /// Whether nodes have normals of twice their resolution.
+    pub has_normals: bool,
     /// Number of levels by which the elevation map is coarser than the terrain; `None` without a map.
     pub map: Option<u32>,
 }
@@ -97,6 +101,7 @@ struct BatchJob {
     given: Option<GivenJob>,
     slots: Buffer<u32>,
     nodes: Job,
+    normals: Option<Job>,
 }
 
 /// Replaces heights of regions by those of a map, on the regions' own lattice.
@@ -206,7 +211,7 @@ impl Pool {
     /// # Errors
     /// [`crate::gpu::GpuError`].
     pub fn new(gpu: &Gpu, recipe: &Recipe, grid: Grid, size: PoolSize) -> Result<Self, Error> {
-        let (config, PoolSize { capacity, has_holes, map }) = (&recipe.config, size);
+        let (config, PoolSize { capacity, has_holes, has_normals, map }) = (&recipe.config, size);
         let width = (0..=grid.top).map(|level| grid.shape(level).region_width()).max().unwrap_or(0);
         // The largest scratch is that of the widest regions with the most subdivisions.
         let regions = Regions { count: BATCH as u32, width, coarser: 0 };
@@ -229,11 +234,16 @@ impl Pool {
             generator: RegionPass::new(gpu, config, recipe.features.injection())?,
             injection: recipe.features.injection(),
             pass: NodePass::new(gpu)?,
+            normals_pass: NodeNormalsPass::new(gpu)?,
+            normals: Buffer::new(
+                gpu,
+                "normals of nodes",
+                if has_normals { capacity * (grid.shape(0).normals_width() as usize).pow(2) } else { 1 },
+            )?,
             heights: Buffer::new(gpu, "finer heights", BATCH * (width as usize).pow(2))?,
             scratch: HeightScratch::for_regions(gpu, config, regions)?,
             replace: ReplacePass::new(gpu)?,
-            map,
-            capacity,
+            size,
             grid,
             jobs: [(); 2].map(|()| (0..=grid.top).map(|_| Vec::new()).collect()),
             batches: Vec::new(),
@@ -246,8 +256,8 @@ impl Pool {
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
         let rows = words.as_chunks::<{ NODE_FACTS as usize }>().0;
         let facts = |slot: usize| NodeFacts::from_words(*rows.get(slot)?);
-        let found = (0..self.capacity)
-            .map(|slot| Some(FoundFacts { own: facts(slot)?, generated: facts(self.capacity + slot) }));
+        let found = (0..self.size.capacity)
+            .map(|slot| Some(FoundFacts { own: facts(slot)?, generated: facts(self.size.capacity + slot) }));
         Some((frame, found.collect()))
     }
 
@@ -312,7 +322,7 @@ impl Pool {
             let (heights, tiles, facts) = (&self.heights, &self.tiles, &self.facts);
             self.pass.prepare(gpu, shape, count, NodeBuffers { heights, slots, tiles, facts })
         };
-        let map = self.map.filter(|_| is_given);
+        let map = self.size.map.filter(|_| is_given);
         // A map that is coarser than the regions gives heights of a coarser lattice, from which theirs follow.
         let lattice = map.filter(|map| *map > coarser);
         let lattice = lattice.map(|coarser| GivenHeights { pass: &self.replace, coarser });
@@ -328,7 +338,17 @@ impl Pool {
             }
         };
         let nodes = facts_of(&slots)?;
-        Ok(BatchJob { heights, features, given, slots, nodes })
+        let normals = match shape.finer {
+            0 => None,
+            _ if !self.size.has_normals => None,
+            _ => {
+                let buffers =
+                    NodeNormalsBuffers { heights: &self.heights, slots: &slots, normals: &self.normals };
+                let spacing = config.terrain_scale * f64::from(1_u32 << coarser);
+                Some(self.normals_pass.prepare(gpu, (shape, spacing), count, buffers)?)
+            }
+        };
+        Ok(BatchJob { heights, features, given, slots, nodes, normals })
     }
 
     /// Stages what the jobs of the frame read, and the patches of new nodes.
@@ -345,7 +365,7 @@ impl Pool {
             let job = &self.jobs[usize::from(*is_given)][*level][*job];
             let (mut slots, mut generated) = ([NO_SLOT; BATCH], [NO_SLOT; BATCH]);
             for ((slot, generated), new) in slots.iter_mut().zip(&mut generated).zip(nodes) {
-                (*slot, *generated) = (new.slot, self.capacity as u32 + new.slot);
+                (*slot, *generated) = (new.slot, self.size.capacity as u32 + new.slot);
             }
             staged.elements(&job.slots, 0, &slots)?;
             let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
@@ -363,7 +383,9 @@ impl Pool {
             for new in nodes {
                 self.stage_patch(staged, config, (new.node, new.slot), holes)?;
                 let none = [0; NODE_FACTS as usize];
-                for row in [Some(new.slot as usize), self.map.map(|_| self.capacity + new.slot as usize)] {
+                for row in
+                    [Some(new.slot as usize), self.size.map.map(|_| self.size.capacity + new.slot as usize)]
+                {
                     let Some(row) = row else { continue };
                     staged.elements(&self.facts, row * NODE_FACTS as usize, &none)?;
                 }
@@ -375,7 +397,7 @@ impl Pool {
     /// The region whose heights a map gives to a node.
     pub fn given_region(&self, config: &TerrainConfig, node: Node) -> Region {
         let own = self.grid.region_of(node);
-        match self.map.filter(|map| *map > own.coarser) {
+        match self.size.map.filter(|map| *map > own.coarser) {
             Some(map) => lattice_region(config, own, map),
             None => own,
         }
@@ -411,6 +433,7 @@ impl Pool {
                 given.replace.record(encoder);
             }
             job.nodes.record(encoder);
+            job.normals.iter().for_each(|normals| normals.record(encoder));
         }
         if reads_facts {
             let facts = &self.facts;

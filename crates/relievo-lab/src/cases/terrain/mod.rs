@@ -8,6 +8,7 @@ pub mod hydraulic;
 mod levels;
 pub mod morph;
 pub mod node;
+pub mod node_normals;
 pub mod noise;
 pub mod normals;
 pub mod pad;
