@@ -3,9 +3,12 @@
 //! writes none.
 //!
 //! ```sh
-//! cargo bench --no-default-features --bench package                  # creature and rock
-//! cargo bench … -- creature model.glb
+//! cargo bench --no-default-features --bench package                  # creature, rock, helmet, and the rock with flat shading
+//! cargo bench … -- helmet model.glb flat:model.glb          # of these alone: names of the three, and files
 //! ```
+
+#[path = "../levels/helmet.rs"]
+mod helmet;
 
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -13,7 +16,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use relievo::asset::package::{Package, PackageHeader};
-use relievo::asset::{Mesh, Model, ModelFile};
+use relievo::asset::{Influences, Mesh, Model, ModelFile};
 use relievo::ops::skinning::{cook, level_errors, own_levels};
 
 /// zstd's level in both encodings.
@@ -161,11 +164,43 @@ fn report(name: &str, file: &ModelFile) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+fn open(name: &str) -> Result<ModelFile, Box<dyn Error>> {
+    let model = match name {
+        "creature" | "rock" => relievo_samples::model(name)?,
+        "helmet" => helmet::helmet()?,
+        file => return Ok(ModelFile::open(Path::new(file))?),
+    };
+    Ok(ModelFile { model, images: Vec::new() })
+}
+
+/// A model whose triangles have vertices of their own, with the normals of the triangles.
+fn flat(mut file: ModelFile) -> Result<ModelFile, Box<dyn Error>> {
+    for mesh in &mut file.model.meshes {
+        let corners: Vec<usize> = mesh.indices.iter().map(|vertex| *vertex as usize).collect();
+        let positions: Vec<_> = corners.iter().map(|corner| mesh.positions[*corner]).collect();
+        let indices: Vec<u32> = (0..corners.len() as u32).collect();
+        let influences = corners.iter().map(|corner| mesh.influences.of(*corner).to_vec());
+        *mesh = Mesh {
+            name: mesh.name.clone(),
+            skin: mesh.skin,
+            material: mesh.material,
+            normals: relievo::asset::mesh::smooth_normals(&positions, &indices),
+            tangents: corners.iter().map(|corner| mesh.tangents[*corner]).collect(),
+            uv: corners.iter().map(|corner| mesh.uv[*corner]).collect(),
+            influences: Influences::new("influences", file.model.skins[mesh.skin].bones.len(), influences)?,
+            positions,
+            indices,
+            ..Mesh::default()
+        };
+    }
+    Ok(file)
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     // Cargo passes `--bench` of its own.
     let mut names: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     if names.is_empty() {
-        names.extend(["creature", "rock"].map(str::to_owned));
+        names.extend(["creature", "rock", "helmet", "flat:rock"].map(str::to_owned));
     }
     println!(
         "| model | meshes | triangles | levels | finest alone, bytes | package, bytes | ratio | a file a level, ratio | \
@@ -173,9 +208,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("|{}", "---|".repeat(13));
     for name in &names {
-        let file = match name.as_str() {
-            "creature" | "rock" => ModelFile { model: relievo_samples::model(name)?, images: Vec::new() },
-            file => ModelFile::open(Path::new(file))?,
+        let file = match name.strip_prefix("flat:") {
+            Some(name) => flat(open(name)?)?,
+            None => open(name)?,
         };
         report(&Path::new(name).file_stem().unwrap_or_default().to_string_lossy(), &file)?;
     }

@@ -168,3 +168,28 @@ fn claims_allocate_in_proportion() {
         }
     }
 }
+
+/// Processor time of all threads of the program so far, in seconds.
+#[cfg(unix)]
+fn processor_seconds() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// Reading a package takes milliseconds, and a small fraction of the time to make it.
+#[cfg(unix)]
+#[test]
+fn packages_are_read_in_milliseconds() {
+    let _alone = alone();
+    let source = relievo_samples::creature().expect("valid");
+    let started = processor_seconds();
+    let whole = cooked(&source);
+    let cooked = processor_seconds() - started;
+    let read = (0..5).map(|_| {
+        let started = processor_seconds();
+        Model::from_rlv(&whole).expect("read");
+        processor_seconds() - started
+    });
+    let read = read.fold(f64::INFINITY, f64::min);
+    assert!(read < 0.05 && 50.0 * read < cooked, "{read} s to read, {cooked} s to cook");
+}

@@ -81,6 +81,7 @@ pub(super) struct AttributeContexts {
     tangents: Vec<Numbers>,
     sign: Vec<Frequencies>,
     uv: Vec<Numbers>,
+    are_copies: Frequencies,
     /// By the number of influences of the point that predicts.
     counts: Vec<Frequencies>,
     bones: Vec<Frequencies>,
@@ -100,6 +101,7 @@ impl AttributeContexts {
             tangents: numbers(4),
             sign: symbols(3, 2),
             uv: numbers(2 * SCALES),
+            are_copies: Frequencies::new(2),
             counts: symbols(MAX_INFLUENCES + 1, MAX_INFLUENCES),
             bones: symbols(MAX_INFLUENCES, MAX_INFLUENCES + 1),
             weights: numbers(2 * MAX_INFLUENCES),
@@ -223,17 +225,32 @@ impl Attributes {
         around: &Around<'_>,
         written: Option<Written<'_>>,
     ) -> Result<(), InputError> {
-        for point in around.range.clone() {
-            let parent = surface.parents[point as usize];
-            let near = match parent {
-                NONE => around.known(point).next().or(point.checked_sub(1)),
-                parent => Some(parent),
-            };
-            let near: Vec<(u32, i32)> = near.map_or_else(Vec::new, |near| self.influences(near).to_vec());
-            let wanted: Vec<(u32, i32)> = written.map_or_else(Vec::new, |written| {
+        let near_of = |point: u32| match surface.parents[point as usize] {
+            NONE => around.known(point).next().or(point.checked_sub(1)),
+            parent => Some(parent),
+        };
+        let wanted_of = |grids: &Grids, point: u32| -> Vec<(u32, i32)> {
+            written.map_or_else(Vec::new, |written| {
                 let own = written.mesh.influences.of(written.points[point as usize] as usize);
-                own.iter().map(|one| (one.bone, self.grids.weights.whole(one.weight))).collect()
-            });
+                own.iter().map(|one| (one.bone, grids.weights.whole(one.weight))).collect()
+            })
+        };
+        let is_copy = |point: u32| {
+            near_of(point).is_some_and(|near| wanted_of(&self.grids, near) == wanted_of(&self.grids, point))
+        };
+        let are_copies = written.is_some() && around.range.clone().all(is_copy);
+        if coder.symbol(&mut contexts.are_copies, usize::from(are_copies))? == 1 {
+            for point in around.range.clone() {
+                let near = near_of(point).ok_or_else(damaged)?;
+                self.all.extend_from_within(self.influence_range(near));
+                self.ends.push(self.all.len() as u32);
+            }
+            return Ok(());
+        }
+        for point in around.range.clone() {
+            let near = near_of(point).map_or(0..0, |near| self.influence_range(near));
+            let near: Vec<(u32, i32)> = self.all[near].to_vec();
+            let wanted = wanted_of(&self.grids, point);
             let context = &mut contexts.counts[near.len()];
             let count = 1 + coder.symbol(context, wanted.len().saturating_sub(1))?;
             let mut left = ALL_WEIGHTS;
@@ -265,9 +282,10 @@ impl Attributes {
         Ok(())
     }
 
-    fn influences(&self, point: u32) -> &[(u32, i32)] {
+    /// The place of a point's influences in `all`.
+    fn influence_range(&self, point: u32) -> Range<usize> {
         let start = point.checked_sub(1).map_or(0, |before| self.ends[before as usize]);
-        &self.all[start as usize..self.ends[point as usize] as usize]
+        start as usize..self.ends[point as usize] as usize
     }
 
     fn code_normals(
@@ -506,8 +524,10 @@ impl Attributes {
             bone: *bone,
             weight: self.grids.weights.float(*weight),
         };
-        let influences =
-            surface.point_of.iter().map(|point| self.influences(*point).iter().map(influence).collect());
+        let influences = surface
+            .point_of
+            .iter()
+            .map(|point| self.all[self.influence_range(*point)].iter().map(influence).collect());
         mesh.influences = crate::asset::Influences::stored("mesh.influences", influences)?;
         let delta = |parts: &[i32; 9]| {
             let part = |group: usize| {

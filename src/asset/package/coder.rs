@@ -19,13 +19,10 @@ const PRECISION: usize = 16;
 /// The sum of all probabilities.
 const WHOLE: u32 = 1 << PRECISION;
 
-/// Number of bits of an adaptive cumulative frequency.
-const ADAPTED: u32 = 15;
-
 /// Adaptive frequencies of the symbols of one alphabet, at most 256. Every symbol keeps a probability above 0.
 #[derive(Debug, Clone)]
 pub(super) struct Frequencies {
-    /// Cumulative frequencies below each symbol, in 1/2¹⁵. The first is 0.
+    /// Cumulative probability below each symbol, in 1/[`WHOLE`]. The first is 0.
     below: Vec<u16>,
     seen: u32,
 }
@@ -33,17 +30,13 @@ pub(super) struct Frequencies {
 impl Frequencies {
     /// Equal frequencies of `symbols` symbols.
     pub fn new(symbols: usize) -> Self {
-        let below = (0..symbols).map(|symbol| (symbol << ADAPTED).div_euclid(symbols) as u16);
+        let below = (0..symbols).map(|symbol| (symbol * WHOLE as usize / symbols) as u16);
         Self { below: below.collect(), seen: 0 }
     }
 
     /// Cumulative probability below a symbol, in 1/[`WHOLE`].
     fn cumulative(&self, symbol: usize) -> u32 {
-        let symbols = self.below.len() as u32;
-        match self.below.get(symbol) {
-            Some(below) => ((u32::from(*below) * (WHOLE - symbols)) >> ADAPTED) + symbol as u32,
-            None => WHOLE,
-        }
+        self.below.get(symbol).map_or(WHOLE, |below| u32::from(*below))
     }
 
     /// Moves the frequencies towards a symbol that was coded; at first by larger steps.
@@ -56,9 +49,12 @@ impl Frequencies {
             _ => 7,
         };
         self.seen = self.seen.saturating_add(1);
+        // A cumulative probability stays between these bounds, so that each symbol keeps 1/`WHOLE`.
+        let most = (WHOLE as usize - self.below.len()) as u16;
         let (at_most, above) = self.below.split_at_mut(symbol + 1);
-        at_most.iter_mut().for_each(|below| *below -= *below >> rate);
-        above.iter_mut().for_each(|below| *below += ((1 << ADAPTED) - *below) >> rate);
+        (0_u16..).zip(at_most).for_each(|(least, below)| *below -= (*below - least) >> rate);
+        let first = symbol as u16 + 1;
+        (first..).zip(above).for_each(|(least, below)| *below += (most + least - *below) >> rate);
     }
 }
 
@@ -77,39 +73,11 @@ impl EncoderModel<PRECISION> for Frequencies {
 
 impl DecoderModel<PRECISION> for Frequencies {
     fn quantile_function(&self, quantile: u32) -> (usize, u32, NonZeroU32) {
-        let (mut symbol, mut from) = (0, 0);
-        loop {
-            let to = self.cumulative(symbol + 1);
-            if quantile < to || symbol + 1 == self.below.len() {
-                return (symbol, from, NonZeroU32::MIN.saturating_add(to - from - 1));
-            }
-            (symbol, from) = (symbol + 1, to);
-        }
-    }
-}
-
-/// A number of bits, 1 to [`PRECISION`], of equal probability.
-struct Even {
-    bits: u32,
-}
-
-impl EntropyModel<PRECISION> for Even {
-    type Symbol = u32;
-    type Probability = u32;
-}
-
-impl EncoderModel<PRECISION> for Even {
-    fn left_cumulative_and_probability(&self, symbol: impl Borrow<u32>) -> Option<(u32, NonZeroU32)> {
-        let shift = PRECISION as u32 - self.bits;
-        Some((symbol.borrow() << shift, NonZeroU32::new(1 << shift)?))
-    }
-}
-
-impl DecoderModel<PRECISION> for Even {
-    fn quantile_function(&self, quantile: u32) -> (u32, u32, NonZeroU32) {
-        let shift = PRECISION as u32 - self.bits;
-        let symbol = quantile >> shift;
-        (symbol, symbol << shift, NonZeroU32::MIN.saturating_add((1 << shift) - 1))
+        let is_below = |below: &&u16| u32::from(**below) <= quantile;
+        let symbol = self.below[1..].iter().filter(is_below).count();
+        let from = self.cumulative(symbol);
+        let size = self.cumulative(symbol + 1) - from;
+        (symbol, from, NonZeroU32::MIN.saturating_add(size - 1))
     }
 }
 
@@ -143,77 +111,102 @@ pub(super) fn damaged() -> InputError {
     InputError::new("levels", "damaged", "must be a chunk that this format can have")
 }
 
-/// A writer of symbols.
-pub(super) struct Writer(DefaultRangeEncoder);
+/// A writer. Symbols and bits are two streams: bits need no arithmetic.
+pub(super) struct Writer {
+    symbols: DefaultRangeEncoder,
+    bits: Vec<u8>,
+    /// Number of bits.
+    count: usize,
+}
+
+/// Number of bytes of the length of the symbols.
+const LENGTH: usize = 4;
 
 impl Writer {
     pub fn new() -> Self {
-        Self(DefaultRangeEncoder::new())
+        Self { symbols: DefaultRangeEncoder::new(), bits: Vec::new(), count: 0 }
     }
 
-    /// The bytes of all symbols.
+    /// The bytes of all symbols and bits: the length of the symbols, the symbols, the bits. A reader appends zeros.
     pub fn finish(self) -> Vec<u8> {
-        let words = self.0.into_compressed().unwrap_or_else(|never| match never {});
-        let mut bytes: Vec<u8> = words.iter().flat_map(|word| word.to_be_bytes()).collect();
-        // A reader appends zeros.
-        while bytes.last() == Some(&0) {
-            bytes.pop();
-        }
-        bytes
+        let words = self.symbols.into_compressed().unwrap_or_else(|never| match never {});
+        let symbols: Vec<u8> = words.iter().flat_map(|word| word.to_be_bytes()).collect();
+        let length = symbols.len() - symbols.iter().rev().take_while(|byte| **byte == 0).count();
+        [&(length as u32).to_le_bytes(), &symbols[..length], &self.bits].concat()
     }
 }
 
 impl Coder for Writer {
     fn symbol(&mut self, frequencies: &mut Frequencies, symbol: usize) -> Result<usize, InputError> {
-        self.0.encode_symbol(symbol, &*frequencies).map_err(|_| damaged())?;
+        self.symbols.encode_symbol(symbol, &*frequencies).map_err(|_| damaged())?;
         frequencies.adapt(symbol);
         Ok(symbol)
     }
 
     fn bits(&mut self, bits: u32, value: u64) -> Result<u64, InputError> {
-        let mut left = bits;
-        while left > 0 {
-            let some = left.min(PRECISION as u32);
-            left -= some;
-            let part = (value >> left) as u32 & (WHOLE - 1) >> (PRECISION as u32 - some);
-            self.0.encode_symbol(part, Even { bits: some }).map_err(|_| damaged())?;
+        for bit in 0..bits {
+            let place = self.count % 8;
+            if place == 0 {
+                self.bits.push(0);
+            }
+            if let Some(last) = self.bits.last_mut() {
+                *last |= ((value >> bit & 1) as u8) << place;
+            }
+            self.count += 1;
         }
         Ok(value)
     }
 }
 
-/// A reader of symbols.
-pub(super) struct Reader(DefaultRangeDecoder);
+/// A reader of the bytes of one [`Writer`].
+pub(super) struct Reader<'a> {
+    symbols: DefaultRangeDecoder,
+    bits: &'a [u8],
+    /// Number of bits that were read.
+    count: usize,
+}
 
-impl Reader {
-    /// A reader of the bytes of one [`Writer`].
-    pub fn new(bytes: &[u8]) -> Self {
+impl<'a> Reader<'a> {
+    /// # Errors
+    /// [`InputError`] for a length of symbols that exceeds the bytes.
+    pub fn new(bytes: &'a [u8]) -> Result<Self, InputError> {
+        let (length, rest) = bytes.split_first_chunk::<LENGTH>().ok_or_else(damaged)?;
+        let length = u32::from_le_bytes(*length) as usize;
+        let (symbols, bits) = rest.split_at_checked(length).ok_or_else(damaged)?;
         let word = |bytes: &[u8]| {
             let mut word = [0; 4];
             word[..bytes.len()].copy_from_slice(bytes);
             u32::from_be_bytes(word)
         };
-        let words: Vec<u32> = bytes.chunks(4).map(word).collect();
-        Self(DefaultRangeDecoder::from_compressed(words).unwrap_or_else(|never| match never {}))
+        let words: Vec<u32> = symbols.chunks(4).map(word).collect();
+        let symbols = DefaultRangeDecoder::from_compressed(words).unwrap_or_else(|never| match never {});
+        Ok(Self { symbols, bits, count: 0 })
+    }
+
+    /// Reads up to 56 bits.
+    fn few(&mut self, bits: u32) -> u64 {
+        let mut word = [0; 8];
+        let rest = self.bits.get(self.count / 8..).unwrap_or_default();
+        match rest.first_chunk() {
+            Some(whole) => word = *whole,
+            None => word[..rest.len()].copy_from_slice(rest),
+        }
+        let value = u64::from_le_bytes(word) >> (self.count % 8) & ((1 << bits) - 1);
+        self.count = self.count.saturating_add(bits as usize);
+        value
     }
 }
 
-impl Coder for Reader {
+impl Coder for Reader<'_> {
     fn symbol(&mut self, frequencies: &mut Frequencies, _: usize) -> Result<usize, InputError> {
-        let symbol = self.0.decode_symbol(&*frequencies).map_err(|_| damaged())?;
+        let symbol = self.symbols.decode_symbol(&*frequencies).map_err(|_| damaged())?;
         frequencies.adapt(symbol);
         Ok(symbol)
     }
 
     fn bits(&mut self, bits: u32, _: u64) -> Result<u64, InputError> {
-        let (mut left, mut value) = (bits, 0);
-        while left > 0 {
-            let some = left.min(PRECISION as u32);
-            left -= some;
-            let part = self.0.decode_symbol(Even { bits: some }).map_err(|_| damaged())?;
-            value |= u64::from(part) << left;
-        }
-        Ok(value)
+        let low = self.few(bits.min(32));
+        Ok(if bits > 32 { low | self.few(bits - 32) << 32 } else { low })
     }
 }
 
@@ -301,7 +294,7 @@ mod tests {
             writer.bits(64, u64::MAX - 5).expect("written");
         });
         let bytes = writer.finish();
-        let mut reader = Reader::new(&bytes);
+        let mut reader = Reader::new(&bytes).expect("a length");
         code(&mut |frequencies, model| {
             for number in &numbers {
                 assert_eq!(model.code(&mut reader, 0), Ok(*number));

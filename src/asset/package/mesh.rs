@@ -105,7 +105,7 @@ impl<'a> LeveledMesh<'a> {
             };
             let contexts = &mut contexts.attributes;
             self.attributes.level(coder, contexts, room, (&self.surface, &added), written)?;
-            self.levels.push(self.surface.corners.as_flattened().to_vec());
+            self.levels.push(self.surface.indices());
         }
         Ok(())
     }

@@ -146,7 +146,7 @@ impl Package {
         level.chunk.check(&path, bytes)?;
         // Until the end, a further attempt is refused.
         self.levels = self.header.levels.len();
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::new(bytes).map_err(|error| error.below("package"))?;
         let mut found = [0; 2];
         for mesh in &mut self.meshes {
             mesh.step(at, &mut reader, &mut self.contexts, &mut self.room)

@@ -41,7 +41,10 @@ pub(super) struct SurfaceContexts {
     /// By the kind of the open edge, its neighbours, and whether a child has no triangle yet.
     third: Vec<Frequencies>,
     seed: Frequencies,
+    /// By whether the last point was single.
+    is_single: Vec<Frequencies>,
     corner: Vec<Frequencies>,
+    are_likely: Frequencies,
     partner: Frequencies,
 }
 
@@ -57,7 +60,9 @@ impl SurfaceContexts {
             next_choice: all(CHILDREN + 1, CHILDREN + 1),
             third: all(3 * 5 * 2, 6),
             seed: Frequencies::new(3),
+            is_single: all(2, 2),
             corner: all(CORNERS, 5),
+            are_likely: Frequencies::new(2),
             partner: Frequencies::new(4),
         }
     }
@@ -81,6 +86,8 @@ pub(super) struct Surface {
     pub parents: Vec<u32>,
     /// For each point, its first vertex, or [`NONE`].
     first_vertex: Vec<u32>,
+    /// For each point with a vertex, whether it has only one at all levels.
+    is_single: Vec<bool>,
     /// For each vertex, the point's next vertex, or [`NONE`].
     next_vertex: Vec<u32>,
     /// For each vertex, its point.
@@ -220,6 +227,7 @@ impl Surface {
     fn add_point(&mut self, parent: u32) -> u32 {
         self.parents.push(parent);
         self.first_vertex.push(NONE);
+        self.is_single.push(false);
         self.corner_counts.push(0);
         self.parents.len() as u32 - 1
     }
@@ -237,6 +245,27 @@ impl Surface {
         let first = self.first_vertex.get(point as usize).copied().unwrap_or(NONE);
         let some = |vertex: u32| (vertex != NONE).then_some(vertex);
         std::iter::successors(some(first), move |vertex| some(self.next_vertex[*vertex as usize]))
+    }
+
+    /// The vertices of all triangles, in an order in which neighbours follow each other: a device's vertex cache then misses about
+    /// one vertex a triangle.
+    pub fn indices(&self) -> Vec<u32> {
+        let mut indices = Vec::with_capacity(3 * self.triangles.len());
+        let mut is_drawn = vec![false; self.triangles.len()];
+        let mut stack = Vec::new();
+        for start in 0..self.triangles.len() as u32 {
+            stack.push(3 * start);
+            while let Some(edge) = stack.pop() {
+                let triangle = edge as usize / 3;
+                if std::mem::replace(&mut is_drawn[triangle], true) {
+                    continue;
+                }
+                indices.extend(self.corners[triangle]);
+                let twins = [next(edge), previous(edge)].map(|edge| self.twins[edge as usize]);
+                stack.extend(twins.into_iter().filter(|twin| *twin != NONE));
+            }
+        }
+        indices
     }
 
     /// Codes the next finer level. `truth` has the level when writing. `with_partners` says whether vertices have partners.
@@ -531,10 +560,20 @@ impl Surface {
         truth: &mut Option<Truth<'_>>,
     ) -> Result<(), InputError> {
         self.corners.resize(self.triangles.len(), [NONE; 3]);
+        let mut was_single = false;
         for edge in edges.iter().copied() {
             let point = self.point(edge);
-            let wanted = truth.as_ref().map_or(NONE, |truth| truth.vertex_at(edge));
             let is_bare = self.first_vertex[point as usize] == NONE;
+            if is_bare {
+                let is_single = truth.as_ref().is_some_and(|truth| truth.is_single(edge));
+                let context = &mut contexts.is_single[usize::from(was_single)];
+                was_single = coder.symbol(context, usize::from(is_single))? == 1;
+                self.is_single[point as usize] = was_single;
+            } else if self.is_single[point as usize] {
+                self.corners[edge as usize / 3][edge as usize % 3] = self.first_vertex[point as usize];
+                continue;
+            }
+            let wanted = truth.as_ref().map_or(NONE, |truth| truth.vertex_at(edge));
             let ([left, right], context) = self.beside(edge);
             let symbol = match wanted {
                 NONE => NEW_VERTEX,
@@ -542,8 +581,10 @@ impl Surface {
                 wanted if wanted == right => 1,
                 _ => OTHER_VERTEX,
             };
-            let symbol =
-                if is_bare { NEW_VERTEX } else { coder.symbol(&mut contexts.corner[context], symbol)? };
+            let symbol = match is_bare {
+                true => NEW_VERTEX,
+                false => coder.symbol(&mut contexts.corner[context], symbol)?,
+            };
             let vertex = match symbol {
                 0 => left,
                 1 => right,
@@ -615,13 +656,21 @@ impl Surface {
                 *likely = if *likely == NONE { *vertex } else { *likely };
             }
         }
+        for (vertex, likely) in (first..vertices).zip(&mut likely) {
+            if *likely == NONE {
+                let parent = self.parents[self.point_of[vertex as usize] as usize];
+                *likely = self.vertices_at(parent).find(|other| *other < first).unwrap_or(vertex);
+            }
+        }
+        let wanted = |vertex: u32| truth.as_ref().map_or(0, |truth| truth.partner_of(vertex));
+        let are_likely = (first..vertices).zip(&likely).all(|(vertex, likely)| wanted(vertex) == *likely);
+        let are_likely = coder.symbol(&mut contexts.are_likely, usize::from(are_likely))? == 1;
+        if are_likely {
+            self.partners[first as usize..].copy_from_slice(&likely);
+            return Ok(());
+        }
         for (vertex, likely) in (first..vertices).zip(likely) {
-            let parent = self.parents[self.point_of[vertex as usize] as usize];
-            let likely = match likely {
-                NONE => self.vertices_at(parent).find(|other| *other < first).unwrap_or(vertex),
-                likely => likely,
-            };
-            let wanted = truth.as_ref().map_or(0, |truth| truth.partner_of(vertex));
+            let wanted = wanted(vertex);
             let symbol = match wanted {
                 wanted if wanted == likely => 0,
                 wanted if wanted == vertex => 1,
@@ -851,6 +900,8 @@ pub(super) struct Source<'a> {
     pub point_of: Vec<u32>,
     /// For each point, a vertex.
     pub vertex_of: Vec<u32>,
+    /// For each point, whether it has one vertex.
+    pub is_single: Vec<bool>,
     /// For each vertex, its partner; empty if not known.
     pub partners: &'a [u32],
 }
@@ -987,6 +1038,11 @@ impl<'a> Truth<'a> {
     /// The coded vertex at the start of an edge, or [`NONE`] if it has no name yet.
     fn vertex_at(&self, edge: u32) -> u32 {
         self.vertices[self.source_at(edge) as usize]
+    }
+
+    /// Whether the point at the start of a coded edge has one vertex.
+    fn is_single(&self, edge: u32) -> bool {
+        self.source.is_single[self.source.point_of[self.source_at(edge) as usize] as usize]
     }
 
     fn name_vertex(&mut self, edge: u32, vertex: u32) {

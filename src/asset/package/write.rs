@@ -110,7 +110,7 @@ fn needed(room: &Room) -> usize {
             && used.tests <= header::most_tests(*bytes)
     };
     // All bounds grow with the number of bytes.
-    let (mut low, mut high) = (0, 1 << 40);
+    let (mut low, mut high) = (0, 1 << 30);
     while low < high {
         let middle = (low + high) / 2;
         if fits(&middle) { high = middle } else { low = middle + 1 }
@@ -138,6 +138,9 @@ pub(super) fn source(mesh: &Mesh) -> Source<'_> {
             vertex_of.len() as u32 - 1
         })
     };
-    let point_of = moves.into_iter().enumerate().map(point).collect();
-    Source { point_of, vertex_of, partners: &mesh.partners }
+    let point_of: Vec<u32> = moves.into_iter().enumerate().map(point).collect();
+    let mut counts = vec![0_u32; vertex_of.len()];
+    point_of.iter().for_each(|point| counts[*point as usize] += 1);
+    let is_single = counts.into_iter().map(|count| count == 1).collect();
+    Source { point_of, vertex_of, is_single, partners: &mesh.partners }
 }
