@@ -26,7 +26,7 @@ const ZSTD: i32 = 19;
 const READS: u32 = 20;
 
 fn cooked(file: &ModelFile) -> Result<Vec<u8>, Box<dyn Error>> {
-    let made = cook(&file.model, &file.images, &mut |_| ControlFlow::Continue(()))?;
+    let made = cook(file, &mut |_| ControlFlow::Continue(()))?;
     Ok(made.unwrap_or_default())
 }
 
@@ -34,7 +34,7 @@ fn cooked(file: &ModelFile) -> Result<Vec<u8>, Box<dyn Error>> {
 fn level_bytes(model: &Model) -> Result<(usize, usize), Box<dyn Error>> {
     let mut bare = model.clone();
     bare.meshes.iter_mut().for_each(|mesh| mesh.tangents.fill([0.0; 4]));
-    let bytes = cooked(&ModelFile { model: bare, images: Vec::new() })?;
+    let bytes = cooked(&bare.into())?;
     let (header, _) = PackageHeader::read(&bytes)?;
     let end = |level: usize| header.levels[level].chunk.end - header.model.end;
     Ok((end(header.levels.len() - 1), end(0)))
@@ -170,7 +170,7 @@ fn open(name: &str) -> Result<ModelFile, Box<dyn Error>> {
         "helmet" => helmet::helmet()?,
         file => return Ok(ModelFile::open(Path::new(file))?),
     };
-    Ok(ModelFile { model, images: Vec::new() })
+    Ok(model.into())
 }
 
 /// A model whose triangles have vertices of their own, with the normals of the triangles.

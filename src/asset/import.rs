@@ -11,13 +11,21 @@ use crate::{Error, InputError};
 #[cfg(feature = "gpu")]
 pub(crate) const ENDINGS: [&str; 4] = ["glb", "gltf", "obj", "rlv"];
 
-/// A model, and its images as they are in the file.
+/// A model, and what its file has beyond it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelFile {
     /// The model.
     pub model: Model,
     /// The images of the model as PNG, JPEG or WebP; empty for a Wavefront OBJ file.
     pub images: Vec<Vec<u8>>,
+    /// [`PackageHeader::quantization`](super::package::PackageHeader::quantization) of a package; otherwise 0.
+    pub quantization: f32,
+}
+
+impl From<Model> for ModelFile {
+    fn from(model: Model) -> Self {
+        Self { model, images: Vec::new(), quantization: 0.0 }
+    }
 }
 
 impl ModelFile {
@@ -29,16 +37,15 @@ impl ModelFile {
         Model::read(path, |bytes, beside| {
             if is_package(bytes) {
                 let (model, package) = (Model::from_rlv(bytes)?, Package::new(bytes)?);
-                let images = package.header().images.iter().map(|image| bytes[image.range()].to_vec());
-                return Ok(Self { model, images: images.collect() });
+                let header = package.header();
+                let images = header.images.iter().map(|image| bytes[image.range()].to_vec()).collect();
+                return Ok(Self { model, images, quantization: header.quantization });
             }
-            match is_obj(path) {
-                true => Ok(Self { model: Model::from_obj_beside(bytes, beside)?, images: Vec::new() }),
-                false => {
-                    let (model, images) = Model::from_gltf_with_files(bytes, beside)?;
-                    Ok(Self { model, images })
-                }
+            if is_obj(path) {
+                return Ok(Model::from_obj_beside(bytes, beside)?.into());
             }
+            let (model, images) = Model::from_gltf_with_files(bytes, beside)?;
+            Ok(Self { model, images, quantization: 0.0 })
         })
     }
 }
@@ -82,8 +89,9 @@ impl Model {
     }
 
     /// Reads a file like [`Model::from_file`], with all levels of detail that an artist made: one model a level, the finest
-    /// first. A package has one such level, with levels of detail of its own. Levels are nodes with the extension `MSFT_lod` ([`gltf`](super::gltf#levels-of-detail)). A file without the
-    /// extension has one level. [`join_levels`](crate::ops::skinning::join_levels) makes one model of the levels.
+    /// first. Levels are nodes with the extension `MSFT_lod` ([`gltf`](super::gltf#levels-of-detail)). A file without the
+    /// extension has one level, and so has a package, whose model has levels of detail of its own.
+    /// [`join_levels`](crate::ops::skinning::join_levels) makes one model of the levels.
     ///
     /// # Errors
     /// The errors of [`Model::from_file`], and [`Error::InputFile`] for nodes that cannot be levels

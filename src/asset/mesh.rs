@@ -114,8 +114,8 @@ impl Mesh {
         coarsest
     }
 
-    /// The content of a level as words, for hashes: its vertices with all attributes, and its triangles. The vertices of the level are
-    /// the first `vertices` vertices of the mesh.
+    /// The content of a level as words, for hashes: its vertices with all attributes, and its triangles. The vertices of the level
+    /// are the first `vertices` vertices of the mesh.
     pub(crate) fn level_words(&self, level: u32, vertices: u32) -> Vec<u32> {
         let count = vertices as usize;
         let mut words = vec![vertices, self.triangles(level).len() as u32];

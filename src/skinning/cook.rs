@@ -8,7 +8,7 @@ use super::pose::{Moment, Pose, moments_in};
 use super::poses_of;
 use crate::InputError;
 use crate::asset::package::{Packed, snapped, welded, write};
-use crate::asset::{Clip, Model};
+use crate::asset::{Clip, Model, ModelFile};
 
 /// Levels of detail are computed from a quarter of the poses that [`poses_of`] counts: 15 poses a second, but at least
 /// `LEAST_POSES` and at most `MOST_POSES`.
@@ -28,28 +28,28 @@ pub(crate) fn sparse_poses_of(clip: &Clip) -> Result<usize, InputError> {
     Ok((poses_of(clip)? / SPARSER).clamp(LEAST_POSES, MOST_POSES))
 }
 
-/// Makes a package (`.rlv`, [`package`](crate::asset::package)) of a model. `images` are the model's images as files; images
-/// without a file are written as PNG. `watch` gets the completed fraction of the work, from 0 to 1, never decreasing. If it
-/// breaks, the result is `None`.
+/// Makes a package (`.rlv`, [`package`](crate::asset::package)) of a model. Images that the file does not have are written as
+/// PNG. `watch` gets the completed fraction of the work, from 0 to 1, never decreasing. If it breaks, the result is `None`.
 ///
-/// Attributes are quantized: positions to 2⁻¹⁵ to 2⁻¹⁶ of the extent of all meshes with the same skin, normals and tangents to
-/// about a tenth of a degree and 1°, texture coordinates to 2⁻¹⁴, weights to 2⁻¹⁴. Then equal vertices are merged, and levels of
-/// detail are computed for all clips and the rest pose. The largest distance by which quantization moves a vertex, in the same
-/// poses, is added to the errors of all levels.
+/// Attributes are quantized: positions to 2⁻¹⁵ to 2⁻¹⁶ of the extent of all meshes with the same skin, normals to 0.2°,
+/// tangents to 1.2°, texture coordinates to 2⁻¹⁴, weights to 2⁻¹⁴. Then equal vertices are merged, and levels of detail are
+/// computed for all clips and the rest pose. The largest distance by which quantization moves a vertex, in the same poses, is
+/// added to the errors of all levels.
 ///
-/// A model that has levels of detail is neither quantized nor simplified again.
+/// A package, and any other model that has levels of detail, is neither quantized nor simplified again. The new package states
+/// the quantization of the file.
 ///
 /// # Errors
 /// [`InputError`] for a model whose parts do not match each other, and for a clip of more than an hour.
 pub fn cook(
-    model: &Model,
-    images: &[Vec<u8>],
+    file: &ModelFile,
     watch: &mut dyn FnMut(f32) -> ControlFlow<()>,
 ) -> Result<Option<Vec<u8>>, InputError> {
+    let ModelFile { model, images, quantization } = file;
     model.check().map_err(|error| error.below("model"))?;
-    let has_levels = model.meshes.iter().any(|mesh| !mesh.levels.is_empty());
-    let (model, quantization) = match has_levels {
-        true => (model.clone(), 0.0),
+    let is_done = *quantization > 0.0 || model.meshes.iter().any(|mesh| !mesh.levels.is_empty());
+    let (model, quantization) = match is_done {
+        true => (model.clone(), *quantization),
         false => {
             let poses = model.clips.iter().map(sparse_poses_of).collect::<Result<Vec<_>, _>>()?;
             let poses = poses.into_iter().max().unwrap_or(1);

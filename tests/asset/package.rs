@@ -9,7 +9,7 @@ use relievo::ops::skinning::{add_levels, cook, join_levels, level_errors, own_le
 use sha2::{Digest as _, Sha256};
 
 fn cooked(model: &Model) -> Vec<u8> {
-    cook(model, &[], &mut |_| ControlFlow::Continue(())).expect("cooked").expect("not broken off")
+    cook(&model.clone().into(), &mut |_| ControlFlow::Continue(())).expect("cooked").expect("not broken off")
 }
 
 /// The triangles of a level with all attributes of their corners as bits, from the smallest corner on, each with its number.
@@ -158,6 +158,18 @@ fn every_prefix_is_the_model_at_its_level() {
     for model in models() {
         assert_read(&cooked(&model), &model);
     }
+}
+
+/// The comparison sees one vertex that is one step of texture coordinates away.
+#[test]
+#[should_panic(expected = "level 1 of 1")]
+fn a_planted_difference_is_found() {
+    let model = Model::from_rlv(&cooked(&relievo_samples::wall().expect("valid"))).expect("read");
+    let bytes = cooked(&model);
+    assert_read(&bytes, &model);
+    let mut other = model;
+    other.meshes[0].uv[0][0] += 1.0 / 16_384.0;
+    assert_read(&bytes, &other);
 }
 
 /// Models that were not quantized, with levels that are no subsets of each other, and with influences that fit no grid.

@@ -14,7 +14,7 @@ const ANY: usize = 64 << 20;
 const A_BYTE: usize = 100;
 
 fn cooked(model: &Model) -> Vec<u8> {
-    cook(model, &[], &mut |_| ControlFlow::Continue(())).expect("cooked").expect("not broken off")
+    cook(&model.clone().into(), &mut |_| ControlFlow::Continue(())).expect("cooked").expect("not broken off")
 }
 
 /// Reads a package, within its memory.

@@ -88,10 +88,10 @@ impl Cook {
         let folder =
             self.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         drop(Staged::new(folder)?);
-        let ModelFile { model, images } = open(&self.model)?;
+        let file = open(&self.model)?;
         let begun = std::time::Instant::now();
         let bar = bar(STEPS as u64, "levels of detail");
-        let made = cook(&model, &images, &mut |fraction| {
+        let made = cook(&file, &mut |fraction| {
             bar.set_position((STEPS * fraction) as u64);
             ControlFlow::Continue(())
         });
@@ -130,7 +130,7 @@ impl Cook {
 /// Opens a file or a built-in model.
 fn open(path: &Path) -> Result<ModelFile, Error> {
     match path.to_str().and_then(|text| text.strip_prefix(BUILT_IN)) {
-        Some(name) => Ok(ModelFile { model: relievo_samples::model(name)?, images: Vec::new() }),
+        Some(name) => Ok(relievo_samples::model(name)?.into()),
         None => ModelFile::open(path),
     }
 }

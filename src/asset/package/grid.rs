@@ -44,7 +44,8 @@ impl Grid {
         if values.clone().all(has) { grid } else { Self::Bits }
     }
 
-    /// The grid whose step is between 2⁻`bits` of `extent` and half of it, and at least 2⁻²³ of `largest`, the largest absolute value.
+    /// The grid whose step is between 2⁻`bits` of `extent` and half of it, and at least 2⁻²³ of `largest`, the largest absolute
+    /// value.
     pub fn fitting(extent: f32, largest: f32, bits: i32) -> Self {
         let exponent = |value: f32| (value.max(f32::MIN_POSITIVE).to_bits() >> 23) as i32 - 127;
         let exponent = (exponent(extent) - bits).max(exponent(largest) + 1 - (MULTIPLE_BITS as i32 - 1));

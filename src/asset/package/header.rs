@@ -27,6 +27,9 @@ const BYTES_A_VERTEX: usize = 3;
 const TRIANGLES: usize = 1 << 18;
 const TRIANGLES_A_BYTE: usize = 2;
 
+/// Triangles of all levels that no package may exceed: numbers of their edges fit 32 bits.
+const MOST_TRIANGLES: usize = 1 << 29;
+
 /// Vertices times morph targets that each triangle of [`TRIANGLES`] and each byte of chunks allows.
 const TESTS: usize = 32;
 
@@ -225,7 +228,7 @@ pub(super) fn most_vertices(bytes: usize) -> usize {
 
 /// Largest number of triangles of all levels of all meshes together.
 pub(super) fn most_triangles(bytes: usize) -> usize {
-    TRIANGLES + bytes * TRIANGLES_A_BYTE
+    (TRIANGLES + bytes * TRIANGLES_A_BYTE).min(MOST_TRIANGLES)
 }
 
 /// Largest number of displacements by morph targets.

@@ -52,8 +52,8 @@ pub(super) fn is_package(bytes: &[u8]) -> bool {
 /// ```
 /// use relievo::asset::package::Package;
 ///
-/// let mut rock = relievo_samples::rock()?;
-/// let bytes = relievo::ops::skinning::cook(&mut rock, &[], &mut |_| std::ops::ControlFlow::Continue(()))?;
+/// let rock = relievo_samples::rock()?.into();
+/// let bytes = relievo::ops::skinning::cook(&rock, &mut |_| std::ops::ControlFlow::Continue(()))?;
 /// let bytes = bytes.expect("not broken off");
 /// let mut package = Package::new(&bytes)?;
 /// let header = package.header().clone();

@@ -247,8 +247,8 @@ impl Surface {
         std::iter::successors(some(first), move |vertex| some(self.next_vertex[*vertex as usize]))
     }
 
-    /// The vertices of all triangles, in an order in which neighbours follow each other: a device's vertex cache then misses about
-    /// one vertex a triangle.
+    /// The vertices of all triangles, in an order in which neighbours follow each other: a device's vertex cache then misses
+    /// about one vertex a triangle.
     pub fn indices(&self) -> Vec<u32> {
         let mut indices = Vec::with_capacity(3 * self.triangles.len());
         let mut is_drawn = vec![false; self.triangles.len()];
