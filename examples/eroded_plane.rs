@@ -84,7 +84,6 @@ fn picture(gpu: &Gpu, source: &TerrainSource) -> Result<RgbaImage, Box<dyn Error
         direction: Vec3::new(-0.8, 0.45, 0.3),
         color: Vec3::new(1.5, 1.36, 1.15),
         ambient: 0.3,
-        ..Light::default()
     })?;
     let land = scene.add_terrain(source)?;
     let target = Offscreen::new(gpu, SIZE)?;

@@ -10,8 +10,8 @@
 //! - `render` has the renderer, the shadow of the sun, and an off-screen target. The renderer draws in the caller's render pass.
 //! - `scene_file` reads scenes from JSON, builds them and draws their frames.
 //! - `gpu` opens a device or takes the caller's device. It has typed buffers, prepared jobs and errors.
-//! - [`asset`] has plain data: models with skeletons, skins, clips, meshes and materials. It reads and writes glTF and Wavefront
-//!   OBJ.
+//! - [`asset`] has plain data: models with skeletons, skins, clips, meshes and materials. It reads and writes glTF,
+//!   Wavefront OBJ, and packages of models with their levels of detail ([`asset::package`]).
 //! - [`error`] has the error types. An error for invalid input names the path, the value and the bound.
 //!
 //! **Operations** ([`ops`]) are for programs that bring their own buffers. Each operation is a GPU pass with a CPU reference.

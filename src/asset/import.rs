@@ -3,15 +3,56 @@
 use std::path::Path;
 
 use super::model::Model;
+use super::package::{Package, is_package};
 use crate::asset::gltf::Beside;
 use crate::{Error, InputError};
 
 /// Extensions of the file formats that can be imported, in lower case.
 #[cfg(feature = "gpu")]
-pub(crate) const ENDINGS: [&str; 3] = ["glb", "gltf", "obj"];
+pub(crate) const ENDINGS: [&str; 4] = ["glb", "gltf", "obj", "rlv"];
+
+/// A model, and what its file has beyond it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelFile {
+    /// The model.
+    pub model: Model,
+    /// The images of the model as PNG, JPEG or WebP; empty for a Wavefront OBJ file.
+    pub images: Vec<Vec<u8>>,
+    /// [`PackageHeader::quantization`](super::package::PackageHeader::quantization) of a package; otherwise 0.
+    pub quantization: f32,
+}
+
+impl From<Model> for ModelFile {
+    fn from(model: Model) -> Self {
+        Self { model, images: Vec::new(), quantization: 0.0 }
+    }
+}
+
+impl ModelFile {
+    /// Reads a file like [`Model::from_file`], and keeps its images.
+    ///
+    /// # Errors
+    /// The errors of [`Model::from_file`].
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        Model::read(path, |bytes, beside| {
+            if is_package(bytes) {
+                let (model, package) = (Model::from_rlv(bytes)?, Package::new(bytes)?);
+                let header = package.header();
+                let images = header.images.iter().map(|image| bytes[image.range()].to_vec()).collect();
+                return Ok(Self { model, images, quantization: header.quantization });
+            }
+            if is_obj(path) {
+                return Ok(Model::from_obj_beside(bytes, beside)?.into());
+            }
+            let (model, images) = Model::from_gltf_with_files(bytes, beside)?;
+            Ok(Self { model, images, quantization: 0.0 })
+        })
+    }
+}
 
 impl Model {
-    /// Reads a `.gltf`, `.glb` or `.obj` file, with the buffers, material libraries and images that lie beside it.
+    /// Reads a package (`.rlv`, [`package`](super::package)), or a `.gltf`, `.glb` or `.obj` file with the buffers, material
+    /// libraries and images that lie beside it. The model of a package has levels of detail.
     ///
     /// # Errors
     /// [`Error::File`] if the file cannot be read. [`Error::InputFile`] for content that the format forbids or that this crate
@@ -26,27 +67,31 @@ impl Model {
     /// # Errors
     /// The errors of [`Model::from_file`], except those about materials and images.
     pub fn from_file_bare(path: &Path) -> Result<Self, Error> {
-        Self::read(path, |bytes, beside| match is_obj(path) {
-            true => Self::from_obj(bytes, None),
-            false => Self::from_gltf_bare(bytes, beside),
+        Self::read(path, |bytes, beside| match () {
+            () if is_package(bytes) => Self::from_rlv_bare(bytes),
+            () if is_obj(path) => Self::from_obj(bytes, None),
+            () => Self::from_gltf_bare(bytes, beside),
         })
     }
 
-    /// Reads a model from memory: Wavefront OBJ if its name ends in `.obj`, otherwise glTF. The function `beside` reads the
+    /// Reads a model from memory: a package if the bytes begin like one, Wavefront OBJ if its name ends in `.obj`, otherwise
+    /// glTF. The function `beside` reads the
     /// other files; it receives their paths relative to the model's folder. No file system is needed.
     ///
     /// # Errors
     /// [`InputError`] with the path inside the glTF file, or the line of the OBJ file.
     pub fn from_bytes_beside(name: &Path, bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
-        match is_obj(name) {
-            true => Self::from_obj_beside(bytes, beside),
-            false => Self::from_gltf_beside(bytes, beside),
+        match () {
+            () if is_package(bytes) => Self::from_rlv(bytes),
+            () if is_obj(name) => Self::from_obj_beside(bytes, beside),
+            () => Self::from_gltf_beside(bytes, beside),
         }
     }
 
     /// Reads a file like [`Model::from_file`], with all levels of detail that an artist made: one model a level, the finest
     /// first. Levels are nodes with the extension `MSFT_lod` ([`gltf`](super::gltf#levels-of-detail)). A file without the
-    /// extension has one level. [`join_levels`](crate::ops::skinning::join_levels) makes one model of the levels.
+    /// extension has one level, and so has a package, whose model has levels of detail of its own.
+    /// [`join_levels`](crate::ops::skinning::join_levels) makes one model of the levels.
     ///
     /// # Errors
     /// The errors of [`Model::from_file`], and [`Error::InputFile`] for nodes that cannot be levels
@@ -64,8 +109,8 @@ impl Model {
         bytes: &[u8],
         beside: Beside<'_>,
     ) -> Result<Vec<Self>, InputError> {
-        match is_obj(name) {
-            true => Ok(vec![Self::from_obj_beside(bytes, beside)?]),
+        match is_obj(name) || is_package(bytes) {
+            true => Ok(vec![Self::from_bytes_beside(name, bytes, beside)?]),
             false => Self::levels_from_gltf_beside(bytes, beside),
         }
     }

@@ -114,6 +114,35 @@ impl Mesh {
         coarsest
     }
 
+    /// The content of a level as words, for hashes: its vertices with all attributes, and its triangles. The vertices of the level
+    /// are the first `vertices` vertices of the mesh.
+    pub(crate) fn level_words(&self, level: u32, vertices: u32) -> Vec<u32> {
+        let count = vertices as usize;
+        let mut words = vec![vertices, self.triangles(level).len() as u32];
+        let mut floats = |values: &[f32]| words.extend(values.iter().map(|value| value.to_bits()));
+        floats(self.positions[..count].as_flattened());
+        floats(self.normals[..count].as_flattened());
+        floats(self.tangents[..count].as_flattened());
+        floats(self.uv[..count].as_flattened());
+        for vertex in 0..count {
+            let influences = self.influences.of(vertex);
+            words.push(influences.len() as u32);
+            words.extend(influences.iter().flat_map(|one| [one.bone, one.weight.to_bits()]));
+        }
+        for target in &self.targets {
+            let moved = target.vertices.partition_point(|vertex| *vertex < vertices);
+            words.push(moved as u32);
+            for (vertex, delta) in target.vertices.iter().zip(&target.deltas).take(moved) {
+                words.push(*vertex);
+                words.extend(
+                    [delta.position, delta.normal, delta.tangent].as_flattened().iter().map(|x| x.to_bits()),
+                );
+            }
+        }
+        words.extend(self.triangles(level));
+        words
+    }
+
     /// Weights of the morph targets at a time in seconds inside a clip. A clip without weight keys gives the default weights.
     pub fn weights_at(&self, clip: usize, time: f32) -> Vec<f32> {
         let keys = self.weight_keys.iter().find(|(of, _)| *of == clip);

@@ -15,11 +15,13 @@ pub mod mesh;
 pub mod model;
 pub mod morph;
 pub mod obj;
+pub mod package;
 pub mod skeleton;
 pub(crate) mod tangents;
 pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
+pub use import::ModelFile;
 pub use influences::{Influence, Influences};
 pub use keyframe::KeyframeCursor;
 pub use light::Light;

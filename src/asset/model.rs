@@ -68,6 +68,28 @@ impl Model {
         Ok(Some(material))
     }
 
+    /// Checks that skins, clips, meshes and materials match each other and the skeleton.
+    ///
+    /// # Errors
+    /// [`InputError`] with the path of the part that does not match.
+    pub(crate) fn check(&self) -> Result<(), InputError> {
+        (0..self.skins.len()).try_for_each(|skin| self.check_skin(skin))?;
+        for (at, clip) in self.clips.iter().enumerate() {
+            let path = format!("clips[{at}].bones");
+            InputError::check_len(&path, clip.bones(), self.skeleton.len(), "a bone")?;
+        }
+        for (at, mesh) in self.meshes.iter().enumerate() {
+            self.check_mesh(at)?;
+            self.check_material(at)?;
+            for (clip, _) in &mesh.weight_keys {
+                let path = format!("meshes[{at}].weight_keys.clip");
+                InputError::check_below(path, *clip, self.clips.len())?;
+            }
+        }
+        let bound = || format!("must be at most {}, the number of meshes", self.meshes.len());
+        InputError::check(self.skinned <= self.meshes.len(), "skinned", self.skinned, bound)
+    }
+
     /// Checks one skin.
     ///
     /// # Errors

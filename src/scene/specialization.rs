@@ -269,12 +269,13 @@ mod tests {
         for name in [SHADOWED, OWN_DEPTH, REVERSED] {
             assert!(found.contains(&(name, 1.0)), "{name} in {found:?}");
         }
-        let terrain = Specialization::terrain(TerrainStyle::Wireframe, false).constants(
+        let mut terrain = Specialization::terrain(TerrainStyle::Wireframe, false).constants(
             Shown::Place,
             false,
             true,
             Fade::None,
         );
-        assert_eq!(terrain, [(FADE, 0.0), ("relievo_WIREFRAME", 0.0), (SHADOWED, 0.0)]);
+        terrain.sort_by_key(|(name, _)| *name);
+        assert_eq!(terrain, [(FADE, 0.0), (SHADOWED, 0.0), ("relievo_WIREFRAME", 0.0)]);
     }
 }

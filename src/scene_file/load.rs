@@ -14,22 +14,17 @@ use super::entries::{
 use super::spec::SceneFile;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::Error;
-use crate::asset::{Clip, Mesh, Model};
+use crate::asset::{Mesh, Model};
 use crate::scene::Relief;
-use crate::skinning::{Examined, add_levels, add_levels_and_at_rest, at_rest, join_levels_in, poses_of};
+use crate::skinning::{
+    Examined, add_levels, add_levels_and_at_rest, at_rest, join_levels_in, sparse_poses_of,
+};
 use crate::surface::{Green, HeightMap, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceVertex};
 use crate::terrain::config::ZoneTexture;
 use crate::terrain::elevation::{ElevationLayout, ElevationMap, ElevationTiles};
 use crate::terrain::features::{FeatureFile, Features};
 use crate::terrain::texture::TerrainTexture;
 use crate::{InputError, srgb};
-
-/// Levels of detail are computed from a quarter of the poses that [`poses_of`] counts: 15 poses a second, but at least
-/// `LEAST_POSES` and at most `MOST_POSES`. Fewer poses let a scene load in seconds. `relievo scene --compare` measures the
-/// effect.
-const SPARSER: usize = 4;
-const LEAST_POSES: usize = 9;
-const MOST_POSES: usize = 48;
 
 /// A scene file with the contents of all files that it names. A [`World`](super::World) can be built from it any number of times.
 #[derive(Debug, Clone)]
@@ -80,8 +75,9 @@ impl SceneFile {
     /// `read` gets paths relative to the scene file. Names with the prefix `builtin:` come from `built_ins`;
     /// [`NoBuiltIns`](super::NoBuiltIns) has none. Levels are computed for all meshes and characters. For characters, they fit
     /// the clips that the characters play, at 15 poses a second and at most 48 poses per clip. A model that several objects show
-    /// is read and simplified only once, for the clips of all these objects. Levels that an artist made are joined instead
-    /// ([`join_levels`](crate::ops::skinning::join_levels)); their errors are measured in the same poses.
+    /// is read and simplified only once, for the clips of all these objects. A package (`.rlv`) keeps its own levels. Levels that
+    /// an artist made are joined instead ([`join_levels`](crate::ops::skinning::join_levels)); their errors are measured in the
+    /// same poses.
     ///
     /// # Errors
     /// [`InputError`] with the path of the name in the scene file, in these cases: a file cannot be read or understood; a file
@@ -346,13 +342,16 @@ impl<'a> Files<'a> {
 /// One model of the levels of detail that an artist made, or the only model with levels. The errors of levels fit the clips
 /// and, if an object shows it, the rest pose.
 fn levelled(models: &[Arc<Model>], clips: &[usize], is_at_rest: bool) -> Result<Model, InputError> {
-    let sparse = |clip: &Clip| Ok((poses_of(clip)? / SPARSER).clamp(LEAST_POSES, MOST_POSES));
     if models.len() > 1 {
         let models: Vec<Model> = models.iter().map(|model| Model::clone(model)).collect();
-        return join_levels_in(&models, &Examined { clips, poses: sparse, is_at_rest });
+        return join_levels_in(&models, &Examined { clips, poses: sparse_poses_of, is_at_rest });
     }
     let mut own = Model::clone(&models[0]);
-    let poses = clips.iter().map(|clip| sparse(&own.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
+    // The levels of a package fit all clips and the rest pose.
+    if own.meshes.iter().any(|mesh| !mesh.levels.is_empty()) {
+        return Ok(own);
+    }
+    let poses = clips.iter().map(|clip| sparse_poses_of(&own.clips[*clip])).collect::<Result<Vec<_>, _>>()?;
     let poses = poses.into_iter().max().unwrap_or(1);
     match is_at_rest {
         true => add_levels_and_at_rest(&mut own, clips, poses)?,
@@ -557,7 +556,7 @@ mod tests {
         let nine = format!(r#""levels": [{}]"#, [r#""rock.glb""#; 9].join(", "));
         meshes(&nine, "meshes[0].levels.len", "2..=8");
         meshes(r#""levels": ["rock.glb", 3]"#, "meshes[0].levels[1]", "= 3");
-        meshes(r#""levels": ["rock.glb", "rock.png"]"#, "meshes[0].levels[1]", ".glb, .gltf or .obj");
+        meshes(r#""levels": ["rock.glb", "rock.png"]"#, "meshes[0].levels[1]", ".glb, .gltf, .obj or .rlv");
         meshes(r#""levels": ["rock.glb", "gone.glb"]"#, "meshes[0].levels[1]", "cannot be read");
         meshes(r#""levels": ["rock.glb", "builtin:cow"]"#, "meshes[0].levels[1]", "creature, rock, wall");
         let both = r#""file": "rock.glb", "levels": ["rock.glb", "rock.glb"]"#;

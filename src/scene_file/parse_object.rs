@@ -90,10 +90,10 @@ fn placed(
 
 /// The model's source, from the field `file` or the field `levels`.
 fn model(fields: &Fields<'_>) -> Result<ModelSource, InputError> {
-    let one = |at: &At<'_>| source(at, &ENDINGS, "must be a .glb, .gltf or .obj file");
+    let one = |at: &At<'_>| source(at, &ENDINGS, "must be a .glb, .gltf, .obj or .rlv file");
     let Some(levels) = fields.get("levels") else {
-        let at =
-            fields.need("file", "a .glb, .gltf or .obj file, a built-in model, or levels in its place")?;
+        let at = fields
+            .need("file", "a .glb, .gltf, .obj or .rlv file, a built-in model, or levels in its place")?;
         return Ok(ModelSource::One(one(&at)?));
     };
     if fields.get("file").is_some() {

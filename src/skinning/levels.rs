@@ -282,6 +282,19 @@ pub fn add_levels_with_progress(
     watched(model, Looks { clips, poses, is_at_rest: false }, watch)
 }
 
+/// As [`add_levels_with_progress`], but for all clips and the rest pose.
+///
+/// # Errors
+/// The same errors as [`add_levels`].
+pub(super) fn add_levels_of_all_clips(
+    model: &mut Model,
+    poses: usize,
+    watch: &mut dyn FnMut(f32) -> ControlFlow<()>,
+) -> Result<Option<Vec<MeshLevels>>, InputError> {
+    let clips: Vec<usize> = (0..model.clips.len()).collect();
+    watched(model, Looks { clips: &clips, poses, is_at_rest: true }, watch)
+}
+
 /// A progress callback that ignores the progress and never breaks.
 fn unwatched<T>(_: T) -> ControlFlow<()> {
     ControlFlow::Continue(())

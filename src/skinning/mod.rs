@@ -12,6 +12,7 @@ pub mod buffers;
 pub mod character_levels;
 pub mod clusters;
 pub mod collapse;
+mod cook;
 pub mod export;
 pub mod extent;
 #[cfg(feature = "gpu")]
@@ -36,6 +37,9 @@ pub mod vertex;
 pub use at_rest::{at_rest, still};
 pub use character_levels::{level_errors, level_errors_within, own_levels};
 pub use collapse::collapse_bones;
+pub use cook::cook;
+#[cfg(feature = "gpu")]
+pub(crate) use cook::sparse_poses_of;
 pub use extent::Extent;
 pub use instance_lod::{FadeRange, InstanceLod};
 pub use joined_levels::join_levels;

@@ -3,6 +3,7 @@
 mod damaged;
 mod materials;
 mod obj;
+mod package;
 mod stored;
 mod written;
 

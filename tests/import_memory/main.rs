@@ -1,6 +1,7 @@
 //! What an import allocates: never more than the document's bytes account for, whatever its counts say; and documents
 //! that are damaged anywhere are read or refused.
 
+mod packages;
 #[allow(dead_code, reason = "other tests use the rest")]
 #[path = "../animation/scene.rs"]
 mod scene;

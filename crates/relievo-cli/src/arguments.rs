@@ -35,7 +35,7 @@ impl Backend {
 /// The model that a command shows.
 #[derive(Args)]
 pub struct ModelArgs {
-    /// A .glb, .gltf or .obj file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
+    /// A .glb, .gltf, .obj or .rlv file, or `builtin`: a creature of 153 bones with the clips walk, idle and wave.
     #[arg(long = "model", value_name = "FILE|builtin")]
     path: PathBuf,
 }

@@ -4,6 +4,7 @@ mod arguments;
 mod bench;
 mod coarsen;
 mod collapse;
+mod cook;
 mod creases;
 mod crowd;
 mod demo;
@@ -56,6 +57,7 @@ enum Command {
     Priorities(priorities::Priorities),
     Skin(skin::Skin),
     Simplify(Box<simplify::Simplify>),
+    Cook(cook::Cook),
     Crowd(Box<crowd::Crowd>),
     Sweep(Box<sweep::Sweep>),
     Verify(verify::Verify),
@@ -100,6 +102,7 @@ fn main() -> ExitCode {
         Command::Priorities(command) => command.run(),
         Command::Skin(command) => command.run(&context),
         Command::Simplify(command) => command.run(&context),
+        Command::Cook(command) => command.run(),
         Command::Crowd(command) => command.run(&context),
         Command::Sweep(command) => command.run(&context),
         Command::Bench(command) => command.run(&context),

@@ -55,7 +55,7 @@ const BUILT_IN: &str = "builtin:";
 #[derive(Args)]
 #[command(group(ArgGroup::new("what").required(true).multiple(true).args(["triangles", "share", "error", "compare"])))]
 pub struct Simplify {
-    /// A .glb, .gltf or .obj file, or a built-in model: builtin:creature, builtin:rock or builtin:wall.
+    /// A .glb, .gltf, .obj or .rlv file, or a built-in model: builtin:creature, builtin:rock or builtin:wall.
     #[arg(long, value_name = "FILE|builtin:NAME")]
     model: PathBuf,
     /// Levels of these numbers of triangles, or as few less as the reducer permits.

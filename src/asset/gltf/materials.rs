@@ -1,5 +1,6 @@
 //! Reads the materials that meshes use: base colour with its texture, normal map, and alpha. Decodes PNG, JPEG and WebP images.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::Cursor;
 
@@ -21,6 +22,8 @@ use crate::asset::material::{Alpha, Filter, MAX_TEXELS, Material, Sampling, Text
 pub struct Materials {
     pub materials: Vec<Material>,
     pub images: Vec<RgbaImage>,
+    /// The images as files; `None` if they are not kept.
+    pub files: Option<Vec<Vec<u8>>>,
     /// Whether the import leaves out all materials.
     pub is_unread: bool,
     of_materials: HashMap<usize, usize>,
@@ -31,6 +34,11 @@ impl Materials {
     /// Creates a reader for an import without materials and images.
     pub fn unread() -> Self {
         Self { is_unread: true, ..Self::default() }
+    }
+
+    /// Creates a reader that keeps images as files.
+    pub fn with_files() -> Self {
+        Self { files: Some(Vec::new()), ..Self::default() }
     }
 
     /// Reads a material on its first use. Returns its index in `materials`.
@@ -105,14 +113,15 @@ impl Materials {
         }
         let path = format!("images[{at}]");
         let image = &document.root.images[at];
-        let decoded = match (image.buffer_view, &image.uri) {
-            (Some(view), _) => decode(&document.budget, &path, document.view(view)?.0)?,
-            (None, Some(uri)) => {
-                decode(&document.budget, &path, &document.resource(&format!("{path}.uri"), uri)?)?
-            }
+        let file = match (image.buffer_view, &image.uri) {
+            (Some(view), _) => Cow::Borrowed(document.view(view)?.0),
+            (None, Some(uri)) => Cow::Owned(document.resource(&format!("{path}.uri"), uri)?.to_vec()),
             (None, None) => return Err(InputError::new(path, "empty", "must have a bufferView or a uri")),
         };
-        self.images.push(decoded);
+        self.images.push(decode(&document.budget, &path, &file)?);
+        if let Some(files) = &mut self.files {
+            files.push(file.into_owned());
+        }
         self.of_images.insert(at, self.images.len() - 1);
         Ok(self.images.len() - 1)
     }

@@ -155,6 +155,16 @@ impl Model {
         Self::import(bytes, Some(beside), Materials::unread())
     }
 
+    /// Reads glTF like [`Model::from_gltf_beside`]. Also returns the images as files.
+    pub(super) fn from_gltf_with_files(
+        bytes: &[u8],
+        beside: Beside<'_>,
+    ) -> Result<(Self, Vec<Vec<u8>>), InputError> {
+        let mut materials = Materials::with_files();
+        let model = Self::of_document(&Document::new(bytes, Some(beside), false)?, &mut materials)?;
+        Ok((model, materials.files.unwrap_or_default()))
+    }
+
     fn import(
         bytes: &[u8],
         beside: Option<Beside<'_>>,
@@ -184,7 +194,8 @@ impl Model {
         let nodes = nodes::Nodes::new(document)?;
         let clips = clips::clips(document, &nodes)?;
         let meshes = meshes::meshes(document, &nodes, materials)?;
-        let Materials { materials, images, .. } = std::mem::take(materials);
+        let (materials, images) =
+            (std::mem::take(&mut materials.materials), std::mem::take(&mut materials.images));
         let own = nodes.own_skins();
         let skinned = meshes.iter().take_while(|mesh| mesh.skin < own).count();
         Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes, skinned, materials, images })

@@ -24,25 +24,10 @@ pub(super) struct StoredModel {
 impl TryFrom<StoredModel> for Model {
     type Error = InputError;
 
-    /// Refuses skins, clips and meshes that do not match each other or the skeleton, and missing materials.
     fn try_from(stored: StoredModel) -> Result<Self, InputError> {
         let StoredModel { skeleton, skins, clips, meshes, skinned, materials, images } = stored;
         let model = Self { skeleton, skins, clips, meshes, skinned, materials, images };
-        (0..model.skins.len()).try_for_each(|skin| model.check_skin(skin))?;
-        for (at, clip) in model.clips.iter().enumerate() {
-            let path = format!("clips[{at}].bones");
-            InputError::check_len(&path, clip.bones(), model.skeleton.len(), "a bone")?;
-        }
-        for (at, mesh) in model.meshes.iter().enumerate() {
-            model.check_mesh(at)?;
-            model.check_material(at)?;
-            for (clip, _) in &mesh.weight_keys {
-                let path = format!("meshes[{at}].weight_keys.clip");
-                InputError::check_below(path, *clip, model.clips.len())?;
-            }
-        }
-        let bound = || format!("must be at most {}, the number of meshes", model.meshes.len());
-        InputError::check(model.skinned <= model.meshes.len(), "skinned", model.skinned, bound)?;
+        model.check()?;
         Ok(model)
     }
 }

@@ -11,7 +11,6 @@
 //! At the end of this motion, the level looks like the next coarser level: every corner is at its partner, and the
 //! additional triangles are degenerate.
 
-mod level_hash;
 mod order;
 mod partners;
 mod patch;
@@ -28,6 +27,7 @@ use serde::{Deserialize, Serialize};
 use super::simplify::Simplified;
 use crate::InputError;
 use crate::asset::Mesh;
+use crate::hash::sha256;
 use stored::Stored;
 
 /// A mesh with its levels of detail; level 0 is the finest.
@@ -125,7 +125,7 @@ impl ProgressiveMesh {
         };
         let patches = (0..levels - 1).map(patch).collect::<Result<_, _>>()?;
         let hashes =
-            (0..levels).map(|level| level_hash::hash(&mesh, level, vertices[level as usize])).collect();
+            (0..levels).map(|level| sha256(&mesh.level_words(level, vertices[level as usize]))).collect();
         Ok(Self { mesh, sources, vertices, patches, hashes })
     }
 

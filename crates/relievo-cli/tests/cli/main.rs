@@ -6,6 +6,7 @@ mod harness;
 mod bad_input;
 mod collapse;
 mod commands;
+mod cook;
 mod crowd;
 mod crowd_drawn;
 mod pose;

@@ -32,7 +32,7 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     ("/camera/path/1/fovy", "1", "camera.path[1].fovy = 1", "time, at, look, fov"),
     // What is missing.
     ("/camera", "null", "camera = missing", "where the scene is seen from"),
-    ("/meshes/0/file", "null", "meshes[0].file = missing", ".glb, .gltf or .obj"),
+    ("/meshes/0/file", "null", "meshes[0].file = missing", ".glb, .gltf, .obj or .rlv"),
     ("/meshes/0/instances", "null", "meshes[0].instances = missing", "or scatter"),
     ("/meshes/0/instances/1/at", "null", "meshes[0].instances[1].at = missing", "or on"),
     ("/characters/0/scatter/seed", "null", "characters[0].scatter.seed = missing", "any text"),
@@ -240,7 +240,7 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     ("/meshes/0/file", r#""gone.glb""#, "meshes[0].file = gone.glb", "cannot be read"),
     ("/meshes/0/file", r#""cut.glb""#, "meshes[0].file = cut.glb", "GLB"),
     ("/meshes/0/file", r#""cycle.gltf""#, "meshes[0].file = cycle.gltf", "nodes"),
-    ("/meshes/0/file", r#""scene.json""#, "meshes[0].file = scene.json", ".glb, .gltf or .obj"),
+    ("/meshes/0/file", r#""scene.json""#, "meshes[0].file = scene.json", ".glb, .gltf, .obj or .rlv"),
     ("/meshes/0/file", r#""cow.obj""#, "meshes[0].file = cow.obj", "line 2"),
     ("/meshes/0/file", r#""builtin:cow""#, "meshes[0].file = builtin:cow", "creature, rock, wall"),
     ("/meshes/0/file", r#""points.gltf""#, "meshes[0].file = points.gltf", "must have a mesh"),

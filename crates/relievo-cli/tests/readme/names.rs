@@ -20,6 +20,8 @@ use relievo::scene::{
 fn items() {
     use relievo::scene::LevelOfDetail as _; // LevelOfDetail
     use relievo::scene::LevelStatistics as _; // LevelStatistics
+    use relievo::asset::package::Package as _; // asset::package::Package
+    use relievo::asset::package::PackageHeader as _; // PackageHeader
     use relievo::gpu::shaders::MODULES as _; // gpu::shaders::MODULES
     use relievo::ops::mesh::ProgressiveMesh as _; // ops::mesh::ProgressiveMesh
     use relievo_lab::reduce::Reducer as _; // reduce::Reducer
@@ -56,6 +58,7 @@ fn items() {
 fn members() {
     let _ = Alpha::Blended; // Alpha::Blended
     let _ = |frame: relievo::ops::animation::Frame| frame.ahead; // Frame::ahead
+    let _ = |header: relievo::asset::package::PackageHeader| header.quantization; // PackageHeader::quantization
     let _ = |quality: relievo::scene::Quality| quality.pixels; // Quality::pixels
     let _ = Scene::record; // Scene::record
     let _ = Model::levels_from_file; // Model::levels_from_file
