@@ -96,8 +96,8 @@ impl Renderer {
     ///
     /// The text may have further functions, structs, constants and private variables. None of its names may begin with
     /// `relievo_`. The text may bind resources in bind group 3, visible to the fragment stage, with the layout `layout`. The
-    /// caller sets that group before [`Renderer::draw`]. In the fragment stage, the crate's own pipelines use up to 4 storage
-    /// buffers, 4 uniform buffers, 5 textures and 3 samplers; the caller may use the remainder of WebGPU's default limits.
+    /// caller sets that group before [`Renderer::draw`]. In the fragment stage, the crate's own pipelines use up to 5 storage
+    /// buffers (terrain), 4 uniform buffers, 5 textures and 3 samplers; the caller may use the remainder of WebGPU's default limits.
     ///
     /// The two structs and the crate's own function are:
     ///

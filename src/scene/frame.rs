@@ -370,8 +370,12 @@ impl Scene {
         let blocks = self.layout.as_ref().map_or(0, |layout| layout.blocks);
         let seen = views.iter().map(|view| Ok(view.select_view(blocks, true)?.1));
         let seen = seen.collect::<Result<Vec<SelectView>, InputError>>()?;
+        // Beside other objects, which the device coarsens, an object that coarsens itself takes half of the triangles.
+        let others = u32::from(self.objects.iter().count() > 1);
+        let limit = |view: &&mut View| Some((view.triangle_limit()? >> others).max(1));
+        let limits: Vec<Option<u32>> = views.iter().map(limit).collect();
         for object in self.objects.iter_mut() {
-            if object.provide(&self.gpu, &self.layouts_of_groups, &seen, self.now)? {
+            if object.provide(&self.gpu, &self.layouts_of_groups, (&seen, &limits), self.now)? {
                 self.layout = None;
             }
         }

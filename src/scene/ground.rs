@@ -18,10 +18,12 @@ impl Scene {
     ///
     /// The ground is computed on the CPU from heights that the scene keeps on the host. For terrain made from fields, these
     /// are the heights last read by [`Scene::read_ground`]. For patches that [`Scene::set_patches`] has added since then,
-    /// the heights are unknown, and the result is `None`.
+    /// the heights are unknown, and the result is `None`. Endless terrain makes its finest heights where they are asked for; it has no
+    /// ground in holes, and none where a tile of its elevation map is on its way.
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not in this scene or is not terrain, and for a position that is not finite.
+    /// [`InputError`] for an object that is not in this scene or is not terrain, for a position that is not finite, and for a tile of
+    /// an elevation map that cannot be loaded.
     ///
     /// # Examples
     ///
@@ -99,8 +101,10 @@ impl Scene {
     }
 
     /// Replaces the heights that are injected into an endless terrain, such as those of roads and valleys, from the next frame on. The
-    /// nodes that they change are made again: all at once if they are at most [`EndlessLimits::nodes_per_frame`], and otherwise coarsest
-    /// first. [`Scene::ground`] and [`Scene::pick`] answer for the new heights at once.
+    /// nodes that they change are made again: all at once if they are at most half of [`EndlessLimits::nodes_per_frame`], and otherwise
+    /// coarsest first. [`Scene::ground`] answers for the new heights at once, [`Scene::pick`] from the next frame on.
+    ///
+    /// The call takes some 20 µs for each of the heights on the host. The first heights of a terrain compile a pipeline.
     ///
     /// [`EndlessLimits::nodes_per_frame`]: crate::scene::EndlessLimits::nodes_per_frame
     ///

@@ -259,6 +259,8 @@ impl OnDevice {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SeenBy<'a> {
     pub views: &'a [SelectView],
+    /// For each view, the largest number of triangles for an object that coarsens itself; `None` without a limit.
+    pub triangle_limits: &'a [Option<u32>],
     /// The object in kernel format. Its metric scale does not contain the LOD bias yet.
     pub object: &'a LodObject,
     pub instances: &'a [SceneInstance],

@@ -115,7 +115,7 @@ impl<'a> Seen<'a> {
     /// Computes the visibility of all instances in the views of a frame. `held` keeps recent metrics from frame to
     /// frame.
     pub fn new(seen: &SeenBy<'a>, held: &mut Vec<Held>) -> Self {
-        let SeenBy { views, object, instances, now } = *seen;
+        let SeenBy { views, object, instances, now, .. } = *seen;
         let mut metrics: Vec<Option<f32>> =
             instances.iter().map(|instance| least_metric(views, object, instance)).collect();
         if object.rate > 0.0 {

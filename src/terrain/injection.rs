@@ -136,12 +136,15 @@ impl FeatureOffsets {
                 let [one, two] = [one.get(at), two.get(at)].map(|point| point.map(|point| point.height));
                 one != two || self.mode != other.mode
             };
+            let offset = |at: &(i64, i64)| {
+                [one, two].iter().filter_map(|points| points.get(at)).map(|point| point.offset).max()
+            };
             let places = one.keys().chain(two.keys().filter(|at| !one.contains_key(at)));
-            changed.extend(
-                places
-                    .filter(|at| differs(at))
-                    .map(|(row, column)| ChangedPoint { at: [*column, *row], lattice }),
-            );
+            changed.extend(places.filter(|at| differs(at)).map(|at| ChangedPoint {
+                at: [at.1, at.0],
+                lattice,
+                offset: offset(at).unwrap_or(0),
+            }));
         }
         changed
     }
@@ -154,9 +157,22 @@ pub(crate) struct ChangedPoint {
     at: [i64; 2],
     /// Number of levels by which the coarsest lattice that has the sample is coarser than the terrain.
     lattice: u32,
+    /// The larger distance of the old and the new height from what would be there without them.
+    offset: u32,
 }
 
 impl ChangedPoint {
+    /// How far changed points may raise or lower heights of a region, in 1/65536 height units: for each lattice, twice the effect
+    /// of its largest offset, for the old and the new heights.
+    pub fn bound(changed: &[Self], region: Region) -> i64 {
+        let mut largest = BTreeMap::new();
+        for point in changed.iter().filter(|point| point.changes(region)) {
+            let most: &mut u32 = largest.entry(point.lattice).or_default();
+            *most = point.offset.max(*most);
+        }
+        largest.values().map(|offset| 4 * i64::from(*offset)).sum()
+    }
+
     /// Whether heights of a region change.
     pub fn changes(&self, region: Region) -> bool {
         let reach = REACH << self.lattice;

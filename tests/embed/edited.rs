@@ -44,7 +44,7 @@ fn road(height: f64) -> Vec<([i32; 2], f64)> {
 
 fn source(config: &TerrainConfig, features: TerrainFeatures) -> TerrainSource {
     let recipe = TerrainRecipe { features, ..TerrainRecipe::new(config.clone()) };
-    let limits = EndlessLimits { nodes_per_frame: 64, ..EndlessLimits::default() };
+    let limits = EndlessLimits { nodes_per_frame: 128, ..EndlessLimits::default() };
     TerrainSource::from(recipe).with_limits(limits)
 }
 
@@ -106,7 +106,7 @@ fn edits_are_there_at_once() {
         let ground = height(&world);
         world.frame();
         let statistics = world.scene.terrain_statistics(world.land).expect("endless");
-        assert!((1..=64).contains(&statistics.made), "{statistics:?}");
+        assert!((1..=128).contains(&statistics.made), "{statistics:?}");
         let drawn = world.positions(&camera);
         assert_eq!(holes(&world, &camera, &drawn), 0);
         if edited == &dip {

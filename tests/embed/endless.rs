@@ -573,3 +573,34 @@ fn finer_normals_show_finer_heights() {
     println!("{plain:?} {finer:?}");
     assert!(finer.outliers < 0.6 * plain.outliers && finer.flip < 0.75 * plain.flip, "{plain:?} {finer:?}");
 }
+
+/// A limit of triangles makes the terrain coarser, in the first frame that exceeds it, and the view says by how much.
+#[test]
+fn triangles_keep_to_their_limit() {
+    let limits = EndlessLimits { node_size: 17, nodes_per_frame: 128, ..EndlessLimits::default() };
+    let mut world = World::new(config(), limits, [160, 90]);
+    let camera = world.above([40.0, -700.0], 12.0);
+    world.view.set(camera).expect("valid");
+    world.scene.set_statistics(true).expect("counted");
+    world.settle();
+    let drawn = |world: &mut World| {
+        world.frame();
+        world.frame();
+        let seen = world.view.statistics().expect("counted");
+        let levels = seen.objects.iter().flat_map(|object| &object.levels);
+        (levels.map(|level| level.triangles).sum::<u64>(), seen.pixels)
+    };
+    let (all, pixels) = drawn(&mut world);
+    assert!(pixels <= 1.0, "{pixels}");
+    for quarters in [3, 2] {
+        let limit = (all * quarters / 4) as u32;
+        world.view.set_quality(Quality { triangles: Some(limit), ..Quality::default() }).expect("valid");
+        let (triangles, pixels) = drawn(&mut world);
+        println!("{triangles} of {limit}, within {pixels} pixels");
+        assert!(triangles <= u64::from(limit) && triangles > u64::from(limit) / 2, "{triangles} of {limit}");
+        assert!(pixels > 1.0, "{pixels}");
+    }
+    world.view.set_quality(Quality::default()).expect("valid");
+    world.settle();
+    assert_eq!(drawn(&mut world), (all, 1.0));
+}

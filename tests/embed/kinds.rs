@@ -744,8 +744,8 @@ fn kinds_outlive_a_device() {
 fn shading_has_what_the_kinds_leave_of_the_limits() {
     let gpu = device();
     // Storage buffers, uniform buffers, textures and samplers.
-    let left = [4, 8, 11, 13];
-    let refused = [[5, 8, 11, 13], [4, 9, 11, 13], [4, 8, 12, 13], [4, 8, 11, 14]];
+    let left = [3, 8, 11, 13];
+    let refused = [[4, 8, 11, 13], [3, 9, 11, 13], [3, 8, 12, 13], [3, 8, 11, 14]];
     let mut scene = Scene::new(&gpu).expect("compiled");
     for sample in &SAMPLES {
         (sample.add)(&gpu, &mut scene);

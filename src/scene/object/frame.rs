@@ -27,12 +27,12 @@ impl Object {
         &mut self,
         gpu: &Gpu,
         layouts: &SceneLayouts,
-        views: &[SelectView],
+        (views, triangle_limits): (&[SelectView], &[Option<u32>]),
         now: f64,
     ) -> Result<bool, Error> {
         let all = Chunk::new(0..self.instances.capacity(), Vec::new());
         let lod = self.biased_lod_object(&all, 1.0);
-        let seen = SeenBy { views, object: &lod, instances: self.instances.all(), now };
+        let seen = SeenBy { views, triangle_limits, object: &lod, instances: self.instances.all(), now };
         let Provided { lod_bias, replaced, placed } =
             self.kind.provide(gpu, layouts, &seen, &mut self.chunks)?;
         for (index, placement, sphere) in placed {

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::{Debug, Formatter};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
@@ -66,7 +67,11 @@ impl ElevationLoader {
         let own = shared.clone();
         std::thread::spawn(move || {
             while let Some(number) = own.next() {
-                let tile = load(number).map(Arc::new);
+                let tile = catch_unwind(AssertUnwindSafe(|| load(number))).unwrap_or_else(|_| {
+                    let bound = "must load: the loader's function panicked";
+                    Err(InputError::new("elevation.tile", format!("{number:?}"), bound).into())
+                });
+                let tile = tile.map(Arc::new);
                 own.store(number, tile);
             }
         });

@@ -9,6 +9,7 @@ mod loader;
 mod tiles;
 
 use std::fmt::Debug;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::terrain::config::{Border, HEIGHT_LIMIT, HEIGHT_ONE, HeightGenerator, TerrainConfig};
@@ -45,7 +46,7 @@ pub struct ElevationLayout {
 pub struct ElevationMap {
     /// Where the samples lie.
     pub layout: ElevationLayout,
-    /// The heights in height units, row by row.
+    /// The heights in height units, row by row, below 16384 in size.
     pub heights: Vec<f32>,
     /// Number of samples from the map's border inwards over which the map blends with generated heights; at most half of its
     /// columns and rows. 0: the map ends at a cliff.
@@ -65,11 +66,11 @@ pub struct TileNumber {
 /// Heights of a tile.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ElevationTile {
-    /// [`TILE_SIZE`]² heights in 1/65536 height units, row by row. Samples outside the map may have any height.
+    /// [`TILE_SIZE`]² heights in 1/65536 height units, row by row, below 2^30 in size. Samples outside the map may have any height.
     pub heights: Vec<i32>,
-    /// In the same units: the largest vertical distance between the map's lattice and the triangles through the tile's samples, in
-    /// the tile's cells and the cells between it and the next tiles to the east and to the south. The diagonal of a cell runs from
-    /// south-west to north-east. 0 for tiles of level 0.
+    /// In the same units: the largest vertical distance between the heights of the map's lattice and the triangles of this level. It is
+    /// taken over the cells whose north-western corner is in the tile and that reach within 4 samples of the map; heights outside the
+    /// map are the generated ones. The diagonal of a cell runs from south-west to north-east. 0 for tiles of level 0.
     pub deviation: u32,
     /// In the same units: the largest second difference of neighbouring heights of the map's lattice in the tile and 8 samples
     /// around it: along rows, along columns, and the twist of a cell. Tiles of level 0 need none.
@@ -81,22 +82,24 @@ pub struct ElevationTile {
 pub struct ElevationInfo {
     /// Where the samples of the map lie.
     pub layout: ElevationLayout,
-    /// Number of levels of tiles above level 0.
+    /// Number of levels of tiles above level 0, 0 to 20.
     pub levels: u32,
-    /// The largest distance between the map and the heights that are generated without it, in 1/65536 height units.
+    /// The largest distance between the map and the heights that are generated without it, in 1/65536 height units, below 2^31.
     pub apart: u32,
 }
 
 /// A source of tiles: a whole map ([`ElevationTiles`]), or tiles that arrive one by one, from a disk or over a network.
 ///
-/// [`Scene::record`](crate::scene::Scene::record) asks for the tiles of the terrain that a frame lacks, nearest first, again in
-/// every frame until they are there.
+/// [`Scene::record`](crate::scene::Scene::record) asks for the tiles that a frame lacks, again in every frame until they are there: those
+/// of coarse nodes first, then those of the nearest. [`Scene::ground`](crate::scene::Scene::ground) and
+/// [`Scene::pick`](crate::scene::Scene::pick) ask too.
 pub trait ElevationSource: Debug + Send + Sync {
     /// Where the tiles lie. It must not change.
     fn info(&self) -> ElevationInfo;
 
-    /// A tile that has samples of the map; `None` if it is still on its way. The first request should start its way. A tile that was
-    /// there may be on its way again later. The same tile must always have the same heights.
+    /// A tile with samples or cells within 4 samples of the map; `None` if it is still on its way. The first request should start its
+    /// way. The function must not wait. A tile that was there may be on its way again later. The same tile must always have the same
+    /// heights.
     ///
     /// # Errors
     /// A tile that will never arrive. The frame that asks for it fails.
@@ -109,9 +112,20 @@ impl ElevationLayout {
         self.spacing.ilog2()
     }
 
-    /// The last column and row.
-    pub(crate) fn last(&self) -> [i64; 2] {
-        [0, 1].map(|axis| i64::from(self.first[axis]) + i64::from(self.size[axis]) - 1)
+    /// Columns and rows of the map.
+    pub(crate) fn samples(&self) -> [RangeInclusive<i64>; 2] {
+        [0, 1].map(|axis| {
+            let first = i64::from(self.first[axis]);
+            first..=first + i64::from(self.size[axis]) - 1
+        })
+    }
+
+    /// Columns and rows of the cells of a level that the map influences.
+    pub(crate) fn cells(&self, level: u32) -> [RangeInclusive<i64>; 2] {
+        let cell = |range: RangeInclusive<i64>| {
+            (range.start() - INFLUENCE) >> level..=(range.end() + INFLUENCE) >> level
+        };
+        self.samples().map(cell)
     }
 
     /// Checks a layout for a terrain.

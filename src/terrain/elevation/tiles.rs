@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::{ElevationInfo, ElevationMap, ElevationSource, ElevationTile, INFLUENCE, TILE_SIZE, TileNumber};
+use super::{
+    ElevationInfo, ElevationLayout, ElevationMap, ElevationSource, ElevationTile, TILE_SIZE, TileNumber,
+};
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::field::region;
@@ -28,7 +30,7 @@ pub struct ElevationTiles {
 }
 
 impl ElevationTiles {
-    /// Cuts a map into tiles for a terrain.
+    /// Cuts a map into tiles for a terrain. Needs 16 bytes for each sample of a square that holds the map.
     ///
     /// # Errors
     /// [`InputError`] as [`ElevationMap::validate`], or that names `heights` if finer heights between the map's samples could
@@ -64,19 +66,19 @@ impl ElevationSource for ElevationTiles {
     }
 
     fn tile(&self, number: TileNumber) -> Result<Option<Arc<ElevationTile>>, Error> {
-        let absent = || InputError::new("tile", format!("{number:?}"), "must have samples of the map");
+        let absent =
+            || InputError::new("tile", format!("{number:?}"), "must lie within 4 samples of the map");
         Ok(Some(self.tiles.get(&number).ok_or_else(absent)?.clone()))
     }
 }
 
-/// The heights of the map's lattice: those of the map, and generated ones around it.
+/// The heights of the map's lattice: those of the map, and generated ones around it, in a square.
 struct Lattice {
     /// Column and row of the first height.
     first: [i64; 2],
     width: usize,
     heights: Vec<i32>,
-    /// The first and the last column and row of the map.
-    map: [RangeInclusive<i64>; 2],
+    layout: ElevationLayout,
     levels: u32,
     apart: u32,
 }
@@ -102,8 +104,7 @@ impl Lattice {
                 apart = apart.max((f64::from(*height) - generated).abs() as u32);
             }
         }
-        let map = [0, 1].map(|axis| i64::from(layout.first[axis])..=layout.last()[axis]);
-        Self { first, width, heights, map, levels, apart }
+        Self { first, width, heights, layout, levels, apart }
     }
 
     fn at(&self, column: i64, row: i64) -> i32 {
@@ -129,19 +130,13 @@ impl Lattice {
             .collect()
     }
 
-    /// The cells of a level in or near the map, by columns and rows.
-    fn cells(&self, level: u32) -> [RangeInclusive<i64>; 2] {
-        let cell = |range: &RangeInclusive<i64>| {
-            (range.start() - INFLUENCE) >> level..=(range.end() + INFLUENCE) >> level
-        };
-        self.map.each_ref().map(cell)
-    }
-
     /// The tiles of a level in or near the map.
     fn tiles_of(&self, level: u32) -> Vec<TileNumber> {
         let size = i64::from(TILE_SIZE);
-        let tiles =
-            self.cells(level).map(|cells| cells.start().div_euclid(size)..=cells.end().div_euclid(size));
+        let tiles = self
+            .layout
+            .cells(level)
+            .map(|cells| cells.start().div_euclid(size)..=cells.end().div_euclid(size));
         let [columns, rows] = tiles;
         let number = |row: i64, column: i64| TileNumber { level, at: [column as i32, row as i32] };
         rows.flat_map(|row| columns.clone().map(move |column| number(row, column))).collect()
@@ -150,7 +145,7 @@ impl Lattice {
     fn tile(&self, number: TileNumber, bent: &[u32]) -> ElevationTile {
         let (size, step) = (i64::from(TILE_SIZE), 1_i64 << number.level);
         let first = number.at.map(|at| i64::from(at) * size);
-        let [columns, rows] = &self.map;
+        let [columns, rows] = self.layout.samples();
         let height = |column: i64, row: i64| {
             let is_given = columns.contains(&column) && rows.contains(&row);
             if is_given { self.at(column, row) } else { 0 }
@@ -162,7 +157,7 @@ impl Lattice {
             return ElevationTile { heights, deviation: 0, second_difference: 0 };
         }
         let [cell_columns, cell_rows] = [0, 1].map(|axis| {
-            let cells = &self.cells(number.level)[axis];
+            let cells = &self.layout.cells(number.level)[axis];
             first[axis].max(*cells.start())..=(first[axis] + size - 1).min(*cells.end())
         });
         let cells = cell_rows.clone().flat_map(|row| cell_columns.clone().map(move |column| [column, row]));

@@ -29,7 +29,7 @@ impl Taken {
 
 /// The largest resource use of vertex and fragment stages. The rest of WebGPU's default limits is left to the caller.
 const VERTEX: Taken = Taken { storage: 8, uniforms: 4, textures: 0, samplers: 0, locations: 7 };
-const FRAGMENT: Taken = Taken { storage: 4, uniforms: 4, textures: 5, samplers: 3, locations: 7 };
+const FRAGMENT: Taken = Taken { storage: 5, uniforms: 4, textures: 5, samplers: 3, locations: 7 };
 
 /// Number of inter-stage locations that a type takes: one per member of a struct, one for other types.
 fn locations(module: &Module, ty: naga::Handle<naga::Type>) -> usize {

@@ -3,10 +3,8 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use crate::terrain::config::TerrainConfig;
-use crate::terrain::elevation::{
-    ElevationInfo, ElevationSource, ElevationTile, INFLUENCE, TILE_SIZE, TileNumber,
-};
+use crate::terrain::config::{HEIGHT_LIMIT, TerrainConfig};
+use crate::terrain::elevation::{ElevationInfo, ElevationSource, ElevationTile, TILE_SIZE, TileNumber};
 use crate::terrain::lattice::Given;
 use crate::terrain::remainder::remainder;
 use crate::terrain::replace::NOT_GIVEN;
@@ -22,8 +20,6 @@ const FARTHEST: f64 = 4.25;
 pub(super) struct Elevation {
     source: Arc<dyn ElevationSource>,
     info: ElevationInfo,
-    /// Columns and rows of the map.
-    columns: [RangeInclusive<i64>; 2],
 }
 
 /// What a map gives to a node.
@@ -51,8 +47,7 @@ impl Elevation {
     pub fn new(source: &Arc<dyn ElevationSource>, config: &TerrainConfig) -> Result<Self, InputError> {
         let info = source.info();
         info.validate(config).map_err(|error| error.below("elevation"))?;
-        let columns = [0, 1].map(|axis| i64::from(info.layout.first[axis])..=info.layout.last()[axis]);
-        Ok(Self { source: source.clone(), info, columns })
+        Ok(Self { source: source.clone(), info })
     }
 
     /// Number of levels by which the map is coarser than the terrain.
@@ -62,8 +57,9 @@ impl Elevation {
 
     /// Whether the map influences heights of a region.
     pub fn reaches(&self, region: Region) -> bool {
-        let first = self.columns.each_ref().map(|range| (range.start() - INFLUENCE) << self.coarser());
-        let last = self.columns.each_ref().map(|range| (range.end() + INFLUENCE) << self.coarser());
+        let near = self.info.layout.cells(0);
+        let first = near.each_ref().map(|range| range.start() << self.coarser());
+        let last = near.each_ref().map(|range| range.end() << self.coarser());
         (0..2).all(|axis| {
             let start = region.first[axis] << region.coarser;
             let end = (region.first[axis] + i64::from(region.width) - 1) << region.coarser;
@@ -80,8 +76,9 @@ impl Elevation {
         let level = step.min(self.info.levels);
         // Each column of the region is every `stride`th of the tiles' level.
         let (stride, size) = (1_i64 << (step - level), i64::from(TILE_SIZE));
+        let samples = self.info.layout.samples();
         let given = [0, 1].map(|axis| {
-            let (range, first) = (&self.columns[axis], region.first[axis]);
+            let (range, first) = (&samples[axis], region.first[axis]);
             let last = first + i64::from(region.width) - 1;
             divided_up(*range.start(), 1 << step).max(first)..=(range.end() >> step).min(last)
         });
@@ -107,7 +104,11 @@ impl Elevation {
             for (row, column) in rows.flat_map(|row| columns.clone().map(move |column| (row, column))) {
                 let from = (row * stride).rem_euclid(size) * size + (column * stride).rem_euclid(size);
                 let to = (row - region.first[1]) as usize * width + (column - region.first[0]) as usize;
-                heights[to] = tile.heights[from as usize];
+                let height = tile.heights[from as usize];
+                let bound = || "must be below 2^30 in size";
+                let is_height = height.unsigned_abs() <= HEIGHT_LIMIT as u32;
+                InputError::check(is_height, "elevation.tile.heights", height, bound)?;
+                heights[to] = height;
             }
         }
         Ok(is_whole.then_some(heights))
@@ -132,11 +133,10 @@ impl Elevation {
             return Ok(Some(Beyond::Further(most as i64)));
         }
         let size = i64::from(TILE_SIZE);
+        let near = self.info.layout.cells(level);
         let tiles = [0, 1].map(|axis| {
-            let (map, own) = (&self.columns[axis], &cells[axis]);
-            let first = ((map.start() - INFLUENCE) >> level).max(*own.start());
-            let last = ((map.end() + INFLUENCE) >> level).min(*own.end());
-            first.div_euclid(size)..=last.div_euclid(size)
+            let (near, own) = (&near[axis], &cells[axis]);
+            near.start().max(own.start()).div_euclid(size)..=near.end().min(own.end()).div_euclid(size)
         });
         let (mut deviation, mut second, mut is_whole) = (0, 0, true);
         for row in tiles[1].clone() {

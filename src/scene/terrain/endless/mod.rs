@@ -19,6 +19,7 @@ use super::drawable::{TerrainGeometry, patch_indices};
 use super::source::TerrainSource;
 use crate::animation::Frame;
 use crate::gpu::{Buffer, Gpu, Staged, Uniform};
+use crate::lod::select::reference::nearly_seen;
 use crate::lod::{LodCamera, SelectView};
 use crate::scene::chunk::Chunk;
 use crate::scene::instances::Instances;
@@ -35,7 +36,7 @@ use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::cover::planes;
 use crate::terrain::features::Features;
-use crate::terrain::injection::FeatureOffsets;
+use crate::terrain::injection::{ChangedPoint, FeatureOffsets};
 use crate::terrain::materials::Materials;
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::node::NodeFacts;
@@ -64,6 +65,15 @@ const LEAST_PIXELS: f32 = 1.0 / 16.0;
 
 /// Largest LOD bias.
 const MOST_BIAS: f32 = 1024.0;
+
+/// Factor by which the bias of a view falls in a frame while its nodes fit the limit of triangles.
+const BIAS_FALL: f32 = 0.98;
+
+/// Largest bias of a view. Around a camera, the error of nodes is divided by the distance of the near plane.
+const MOST_VIEW_BIAS: f32 = 65_536.0;
+
+/// Number of steps that find the bias of a view: the last ones have a ratio of 1.01.
+const BIAS_STEPS: u32 = 10;
 
 /// Extent and memory of endless terrain.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -207,6 +217,8 @@ pub(in crate::scene) struct Endless {
     is_bounded: bool,
     /// Factor of the allowed displacement: 1, or more if the nodes that views need exceed the memory.
     lod_bias: f32,
+    /// The same for each view of the frame: more than 1 if the nodes in view exceed the view's limit of triangles.
+    view_biases: Vec<f32>,
 }
 
 /// A node on the device.
@@ -301,6 +313,7 @@ pub(in crate::scene) fn made(
         statistics: EndlessStatistics { capacity, ..EndlessStatistics::default() },
         is_bounded: true,
         lod_bias: 1.0,
+        view_biases: Vec::new(),
     };
     Ok((endless, instances, (chunks, draws)))
 }
@@ -493,8 +506,8 @@ impl Endless {
         }
     }
 
-    /// Replaces the injected heights. The nodes that they change are made again: at once if a frame may make all that are in use,
-    /// and otherwise coarsest first.
+    /// Replaces the injected heights. The nodes that they change are made again: at once if those in use are at most half of what a
+    /// frame may make, and otherwise coarsest first.
     ///
     /// # Errors
     /// [`InputError`] for heights out of bounds, and for terrain with an elevation map.
@@ -511,35 +524,58 @@ impl Endless {
             changed.iter().any(|point| point.changes(region))
         };
         let stale: Vec<Node> = self.residents.keys().filter(|node| is_changed(node)).copied().collect();
-        let is_used = |node: &&Node| self.residents.get(node).is_some_and(|own| own.used == self.frame);
-        let used: Vec<Node> = stale.iter().filter(is_used).copied().collect();
-        let at_once = used.len() <= self.limits.nodes_per_frame as usize;
+        let is_used = |node: &Node| self.residents.get(node).is_some_and(|own| own.used == self.frame);
+        let again: BTreeSet<Node> =
+            stale.iter().filter(|node| is_used(node)).chain(&self.again).copied().collect();
+        let at_once = again.len() <= self.limits.nodes_per_frame as usize / 2;
         // The coarsest nodes are always drawn, so they keep their places.
-        let stays = |node: &Node| node.level == self.grid.top || at_once && used.contains(node);
-        let (again, gone): (Vec<Node>, Vec<Node>) = stale.into_iter().partition(stays);
+        let stays = |node: &Node| node.level == self.grid.top || at_once && again.contains(node);
+        let (again, gone): (Vec<Node>, Vec<Node>) =
+            stale.into_iter().chain(self.again.iter().copied()).partition(stays);
         for node in gone {
             self.free.extend(self.residents.remove(&node).map(|resident| resident.slot));
         }
-        self.again.extend(again);
+        self.again = again.into_iter().collect();
         // Bounds of what coarser nodes lack have changed, too.
         let all: Vec<Node> = self.residents.keys().copied().collect();
         self.find_facts(&all);
+        for node in &self.again {
+            let by = ChangedPoint::bound(&changed, self.grid.region_of(*node)) as f64 / HEIGHT_ONE;
+            let facts = self.residents.get_mut(node).and_then(|own| own.facts.as_mut());
+            if let Some(Facts { heights: [low, high], .. }) = facts {
+                (*low, *high) = (*low - by, *high + by);
+            }
+        }
         self.are_bounds_changed = true;
         Ok(())
     }
 
-    /// Makes nodes again whose heights have changed, in their places. Until facts about them arrive, the old ones count.
-    fn make_again(&mut self) {
-        let most = self.limits.nodes_per_frame as usize;
-        let again = std::mem::take(&mut self.again);
-        for node in again {
-            if self.new.len() >= most {
-                self.again.insert(node);
-            } else if let Some(resident) = self.residents.get_mut(&node) {
-                (resident.made, resident.used, resident.found) = (self.frame, self.frame, None);
-                self.new.push(NewNode { node, slot: resident.slot, elevation: None });
-            }
+    /// Makes nodes again whose heights have changed, in their places, the coarsest first. Until facts about them arrive, the old ones
+    /// count.
+    ///
+    /// # Errors
+    /// Those of the elevation map's source.
+    fn make_again(&mut self) -> Result<(), Error> {
+        let mut awaited = BTreeSet::new();
+        while self.new.len() < self.limits.nodes_per_frame as usize / 2
+            && let Some(node) = self.again.pop_last()
+        {
+            let elevation = match self.given_to(node)? {
+                Elevated::NotYet => {
+                    awaited.insert(node);
+                    continue;
+                }
+                Elevated::Not => None,
+                Elevated::By(given) => Some(given),
+            };
+            let Some(resident) = self.residents.get_mut(&node) else { continue };
+            resident.beyond = elevation.as_ref().map_or(Beyond::Generated, |given| given.beyond);
+            (resident.made, resident.used, resident.found) = (self.frame, self.frame, None);
+            self.new.push(NewNode { node, slot: resident.slot, elevation });
         }
+        self.statistics.awaited += awaited.len();
+        self.again.extend(awaited);
+        Ok(())
     }
 
     /// Gives a node a place in the pool, and makes it in this frame. Leaves it out if its heights are on their way, or if all places are
@@ -549,6 +585,12 @@ impl Endless {
     /// Those of the elevation map's source.
     fn admit(&mut self, node: Node) -> Result<(), Error> {
         let elevation = match self.given_to(node)? {
+            // The coarsest nodes are always drawn: without the map, until its heights are there.
+            Elevated::NotYet if node.level == self.grid.top => {
+                self.statistics.awaited += 1;
+                self.again.insert(node);
+                None
+            }
             Elevated::NotYet => {
                 self.statistics.awaited += 1;
                 return Ok(());
@@ -567,6 +609,7 @@ impl Endless {
             };
             let left = family.iter().filter_map(|node| self.residents.remove(node));
             self.free.extend(left.map(|resident| resident.slot));
+            self.new.retain(|new| !family.contains(&new.node));
         }
         let Some(slot) = self.free.pop() else {
             self.statistics.refused += 1;
@@ -611,7 +654,7 @@ impl Endless {
         });
         nearest.dedup_by_key(|(_, node)| *node);
         for (_, parent) in nearest {
-            if self.new.len() + BATCH > self.limits.nodes_per_frame as usize {
+            if self.new.len() + self.statistics.awaited + BATCH > self.limits.nodes_per_frame as usize {
                 break;
             }
             let absent: Vec<Node> =
@@ -655,15 +698,21 @@ impl Endless {
     }
 
     /// Chooses what the views of a frame draw, and what the frame makes. Returns the instances that are placed anew.
-    fn choose(&mut self, views: &[SelectView], fraction: f32) -> Result<Vec<Node>, Error> {
+    fn choose(
+        &mut self,
+        (views, limits): (&[SelectView], &[Option<u32>]),
+        fraction: f32,
+    ) -> Result<Vec<Node>, Error> {
         let views = &views.iter().map(with_pixels).collect::<Vec<_>>()[..];
+        self.view_biases.resize(views.len(), 1.0);
         self.frame += 1;
         self.new.clear();
         let mut moved = self.arrive();
         if std::mem::take(&mut self.are_bounds_changed) {
             moved = self.residents.keys().copied().collect();
         }
-        self.make_again();
+        (self.statistics.refused, self.statistics.awaited) = (0, 0);
+        self.make_again()?;
         let eyes: Vec<DVec3> = (views.iter())
             .flat_map(|view| {
                 let corner = Placement::corner(view.cell.into());
@@ -671,7 +720,6 @@ impl Endless {
             })
             .collect();
         let roots = self.roots(&eyes);
-        (self.statistics.refused, self.statistics.awaited) = (0, 0);
         for root in &roots {
             match self.residents.get_mut(root) {
                 Some(resident) => resident.used = self.frame,
@@ -682,9 +730,11 @@ impl Endless {
         }
         let (mut missing, mut soon, mut tables) = (Vec::new(), Vec::new(), Vec::new());
         let (mut wanted, mut split, mut drawn, mut unknown, mut levels) = (0, 0, 0, 0, [0; 18]);
-        for view in views {
-            let is_wanted = |node: Node| self.is_beyond(view, fraction, node);
-            let cover = Cover::new(&roots, is_wanted, |node| self.residents.contains_key(&node));
+        for (index, view) in views.iter().enumerate() {
+            let limit = limits.get(index).copied().flatten();
+            let (bias, cover) = self.within_limit(view, fraction, &roots, (limit, self.view_biases[index]));
+            self.view_biases[index] = bias;
+            let fraction = fraction * bias;
             (wanted, split, drawn) =
                 (wanted + cover.wanted.len(), split + cover.splits.len(), drawn + cover.leaves.len());
             let leaves = cover.leaves.iter().map(|leaf| leaf.node);
@@ -700,8 +750,8 @@ impl Endless {
             }
             // A node without facts may have to be refined.
             let is_unknown = |leaf: &&Leaf| {
-                leaf.node.level > 0 && self.residents.get(&leaf.node).is_none_or(|own| own.found.is_none())
-                    || self.again.contains(&leaf.node)
+                let is_found = |own: &Resident| leaf.node.level == 0 || own.found.is_some();
+                !self.residents.get(&leaf.node).is_some_and(is_found) || self.again.contains(&leaf.node)
             };
             unknown += cover.leaves.iter().filter(is_unknown).count();
             for leaf in &cover.leaves {
@@ -728,6 +778,81 @@ impl Endless {
             ..self.statistics
         };
         Ok(moved)
+    }
+
+    /// The nodes that a view draws within its limit of triangles, and the factor of the allowed displacement at which they fit it. The
+    /// factor grows at once, and falls gradually from that of the last frame.
+    fn within_limit(
+        &self,
+        view: &SelectView,
+        fraction: f32,
+        roots: &BTreeSet<Node>,
+        (limit, last): (Option<u32>, f32),
+    ) -> (f32, Cover) {
+        let cover_at = |bias: f32| {
+            let is_wanted = |node: Node| self.is_beyond(view, fraction * bias, node);
+            Cover::new(roots, is_wanted, |node| self.residents.contains_key(&node))
+        };
+        let Some(limit) = limit else { return (1.0, cover_at(1.0)) };
+        let corner = Placement::corner(view.cell.into());
+        let is_seen = |leaf: &&Leaf| {
+            let [low, high] = self.node_box(leaf.node).map(|at| at - corner);
+            nearly_seen(view, (0.5 * (low + high)).as_vec3(), (0.500_01 * (high - low).length()) as f32)
+        };
+        let triangles = |cover: &Cover| {
+            cover.leaves.iter().filter(is_seen).count() as u64 * 2 * u64::from(self.grid.cells).pow(2)
+        };
+        let fits = |cover: &Cover| triangles(cover) <= u64::from(limit);
+        let finer = (BIAS_FALL * last).max(1.0);
+        let cover = cover_at(finer);
+        if fits(&cover) {
+            return (finer, cover);
+        }
+        // The smallest factor is between `low` and `high`, which may be too small too if the coarsest nodes exceed the limit.
+        let (mut low, mut high, mut fitting) = (finer, MOST_VIEW_BIAS, cover_at(MOST_VIEW_BIAS));
+        for _ in 0..BIAS_STEPS {
+            let middle = (low * high).sqrt();
+            let cover = cover_at(middle);
+            match fits(&cover) {
+                true => (high, fitting) = (middle, cover),
+                false => low = middle,
+            }
+        }
+        (high, fitting)
+    }
+
+    /// Chooses what a frame draws and makes, and prepares it.
+    fn chosen(
+        &mut self,
+        gpu: &Gpu,
+        views: (&[SelectView], &[Option<u32>]),
+        fraction: f32,
+    ) -> Result<Provided, Error> {
+        let moved = self.choose(views, fraction)?;
+        self.pool.make(gpu, &self.recipe, &self.new)?;
+        let placed = moved.into_iter().filter_map(|node| Some((node, self.residents.get(&node)?.slot)));
+        let placed = placed.map(|(node, slot)| {
+            let (placement, sphere) = self.placed(node)?;
+            Ok((slot, placement, sphere))
+        });
+        let placed = placed.collect::<Result<_, InputError>>()?;
+        let lod_bias = self.view_biases.iter().copied().fold(1.0, f32::max) * self.lod_bias;
+        Ok(Provided { lod_bias, placed, ..Provided::default() })
+    }
+
+    /// Takes back the nodes that a frame which fails would have made.
+    fn undo(&mut self) {
+        for NewNode { node, slot, .. } in std::mem::take(&mut self.new) {
+            match self.residents.get(&node) {
+                // Its old heights are there.
+                Some(resident) if resident.facts.is_some() => drop(self.again.insert(node)),
+                _ => {
+                    self.residents.remove(&node);
+                    self.free.push(slot);
+                }
+            }
+        }
+        self.are_bounds_changed = true;
     }
 
     /// Makes levels coarser while the nodes that are needed exceed the memory, and finer again when there is room.
@@ -876,15 +1001,12 @@ impl ObjectKind for Endless {
     ) -> Result<Provided, Error> {
         let asked = seen.views.iter().flat_map(SelectView::cameras).map(|camera| camera.pixels);
         self.is_bounded = asked.fold(f32::INFINITY, f32::min) >= LEAST_PIXELS;
-        let moved = self.choose(seen.views, seen.object.metric_scale * self.lod_bias)?;
-        self.pool.make(gpu, &self.recipe, &self.new)?;
-        let placed = moved.into_iter().filter_map(|node| Some((node, self.residents.get(&node)?.slot)));
-        let placed = placed.map(|(node, slot)| {
-            let (placement, sphere) = self.placed(node)?;
-            Ok((slot, placement, sphere))
-        });
-        let placed = placed.collect::<Result<_, InputError>>()?;
-        Ok(Provided { lod_bias: self.lod_bias, placed, ..Provided::default() })
+        let views = (seen.views, seen.triangle_limits);
+        let provided = self.chosen(gpu, views, seen.object.metric_scale * self.lod_bias);
+        if provided.is_err() {
+            self.undo();
+        }
+        provided
     }
 
     fn stage(&mut self, staged: &mut Staged, _: &Frame, _: f64) -> Result<(), Error> {

@@ -29,8 +29,8 @@ pub(super) const BATCH: usize = 4;
 /// is exact; what lies below is bounded.
 const MOST_FINER: u32 = 3;
 
-/// The same with an elevation map, whose tiles may have to arrive over a network: the fewest for which the bound has the heights that
-/// it needs around a node.
+/// The same with an elevation map. Fewer levels need fewer tiles; these are the fewest with which a node's margin is as wide as
+/// [`remainder_reach`].
 const MOST_FINER_WITH_MAP: u32 = 2;
 
 /// Largest number of cells along an edge of a node's finer heights, unless the node itself has more.
@@ -169,7 +169,7 @@ impl Grid {
         Ok(Self { cells, top: most - cells.ilog2(), most_finer })
     }
 
-    /// The shape of the nodes of a level. The heights from which they are made are up to [`MOST_FINER`] levels finer.
+    /// The shape of the nodes of a level. The heights from which they are made are up to `most_finer` levels finer.
     pub fn shape(self, level: u32) -> NodeShape {
         let finer = (MOST_CELLS / self.cells).max(1).ilog2().min(self.most_finer).min(level);
         NodeShape { size: self.cells + 1, finer }
@@ -205,8 +205,7 @@ impl Grid {
 }
 
 impl Pool {
-    /// Allocates a pool of `capacity` tiles, with memory for holes if `has_holes`. `map` is the number of levels by which an elevation
-    /// map is coarser than the terrain.
+    /// Allocates a pool.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
@@ -278,8 +277,8 @@ impl Pool {
         self.batches.clear();
         let Recipe { config, features, .. } = recipe;
         if self.injection != features.injection() {
+            self.generator = RegionPass::new(gpu, config, features.injection())?;
             self.injection = features.injection();
-            self.generator = RegionPass::new(gpu, config, self.injection)?;
             self.jobs.iter_mut().flatten().for_each(Vec::clear);
         }
         for (level, is_given) in
@@ -331,7 +330,7 @@ impl Pool {
             None => None,
             Some(_) => {
                 let slots = Buffer::new(gpu, "slots of generated heights", BATCH)?;
-                let heights = Buffer::new(gpu, "given heights", self.heights.len())?;
+                let heights = Buffer::new(gpu, "given heights", BATCH * (width as usize).pow(2))?;
                 let buffers = ReplaceBuffers { given: &heights, heights: &self.heights };
                 let replace = self.replace.prepare(gpu, width, count, buffers)?;
                 Some(GivenJob { generated: facts_of(&slots)?, slots, heights, replace })
