@@ -58,11 +58,12 @@ pub(super) struct Pool {
     /// The mode in which the generator injects features.
     injection: Option<FeatureMode>,
     pass: NodePass,
-    normals_pass: NodeNormalsPass,
+    /// `None` for nodes without normals, for which this pipeline is not compiled.
+    normals_pass: Option<NodeNormalsPass>,
     heights: Buffer<i32>,
     scratch: HeightScratch,
-    /// Replaces generated heights by those of a map.
-    replace: ReplacePass,
+    /// Replaces generated heights by those of a map; `None` without a map.
+    replace: Option<ReplacePass>,
     /// The jobs of each level, one for each of a frame's batches of this level: without heights of a map, and with them.
     jobs: [Vec<Vec<BatchJob>>; 2],
     /// The batches of the frame.
@@ -233,7 +234,7 @@ impl Pool {
             generator: RegionPass::new(gpu, config, recipe.features.injection())?,
             injection: recipe.features.injection(),
             pass: NodePass::new(gpu)?,
-            normals_pass: NodeNormalsPass::new(gpu)?,
+            normals_pass: has_normals.then(|| NodeNormalsPass::new(gpu)).transpose()?,
             normals: Buffer::new(
                 gpu,
                 "normals of nodes",
@@ -241,7 +242,7 @@ impl Pool {
             )?,
             heights: Buffer::new(gpu, "finer heights", BATCH * (width as usize).pow(2))?,
             scratch: HeightScratch::for_regions(gpu, config, regions)?,
-            replace: ReplacePass::new(gpu)?,
+            replace: map.map(|_| ReplacePass::new(gpu)).transpose()?,
             size,
             grid,
             jobs: [(); 2].map(|()| (0..=grid.top).map(|_| Vec::new()).collect()),
@@ -284,20 +285,20 @@ impl Pool {
         for (level, is_given) in
             (0..=self.grid.top as usize).flat_map(|level| [(level, false), (level, true)])
         {
+            let (kind, of) = (usize::from(is_given), (level as u32, is_given));
             let is_own =
                 |new: &&NewNode| new.node.level as usize == level && new.elevation.is_some() == is_given;
             let own: Vec<NewNode> = new.iter().filter(is_own).cloned().collect();
             for (job, nodes) in own.chunks(BATCH).enumerate() {
-                let kind = usize::from(is_given);
                 if self.jobs[kind][level].len() <= job {
-                    let made = self.job(gpu, config, (level as u32, is_given), 0)?;
+                    let made = self.job(gpu, config, of, 0)?;
                     self.jobs[kind][level].push(made);
                 }
                 let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
-                let needed = self.jobs[kind][level][job].heights.feature_count(&firsts, features);
-                if needed > self.jobs[kind][level][job].features {
-                    let room = needed.next_power_of_two();
-                    self.jobs[kind][level][job] = self.job(gpu, config, (level as u32, is_given), room)?;
+                let BatchJob { heights, features: room, .. } = &self.jobs[kind][level][job];
+                let needed = heights.feature_count(&firsts, features);
+                if needed > *room {
+                    self.jobs[kind][level][job] = self.job(gpu, config, of, needed.next_power_of_two())?;
                 }
                 self.batches.push(Batch { is_given, level, job, nodes: nodes.to_vec() });
             }
@@ -321,32 +322,28 @@ impl Pool {
             let (heights, tiles, facts) = (&self.heights, &self.tiles, &self.facts);
             self.pass.prepare(gpu, shape, count, NodeBuffers { heights, slots, tiles, facts })
         };
-        let map = self.size.map.filter(|_| is_given);
+        let map = self.size.map.zip(self.replace.as_ref()).filter(|_| is_given);
+        let map = map.map(|(coarser, pass)| GivenHeights { pass, coarser });
         // A map that is coarser than the regions gives heights of a coarser lattice, from which theirs follow.
-        let lattice = map.filter(|map| *map > coarser);
-        let lattice = lattice.map(|coarser| GivenHeights { pass: &self.replace, coarser });
+        let (lattice, own) =
+            (map.filter(|map| map.coarser > coarser), map.filter(|map| map.coarser <= coarser));
         let heights = self.generator.prepare_given(gpu, config, regions, features, output, lattice)?;
-        let given = match map.filter(|map| *map <= coarser) {
-            None => None,
-            Some(_) => {
-                let slots = Buffer::new(gpu, "slots of generated heights", BATCH)?;
-                let heights = Buffer::new(gpu, "given heights", BATCH * (width as usize).pow(2))?;
-                let buffers = ReplaceBuffers { given: &heights, heights: &self.heights };
-                let replace = self.replace.prepare(gpu, width, count, buffers)?;
-                Some(GivenJob { generated: facts_of(&slots)?, slots, heights, replace })
-            }
+        let given = |GivenHeights { pass, .. }: GivenHeights<'_>| -> Result<GivenJob, Error> {
+            let slots = Buffer::new(gpu, "slots of generated heights", BATCH)?;
+            let heights = Buffer::new(gpu, "given heights", BATCH * (width as usize).pow(2))?;
+            let buffers = ReplaceBuffers { given: &heights, heights: &self.heights };
+            let replace = pass.prepare(gpu, width, count, buffers)?;
+            Ok(GivenJob { generated: facts_of(&slots)?, slots, heights, replace })
         };
+        let given = own.map(given).transpose()?;
         let nodes = facts_of(&slots)?;
-        let normals = match shape.finer {
-            0 => None,
-            _ if !self.size.has_normals => None,
-            _ => {
-                let buffers =
-                    NodeNormalsBuffers { heights: &self.heights, slots: &slots, normals: &self.normals };
-                let spacing = config.terrain_scale * f64::from(1_u32 << coarser);
-                Some(self.normals_pass.prepare(gpu, (shape, spacing), count, buffers)?)
-            }
+        let normals = |pass: &NodeNormalsPass| {
+            let buffers =
+                NodeNormalsBuffers { heights: &self.heights, slots: &slots, normals: &self.normals };
+            let spacing = config.terrain_scale * f64::from(1_u32 << coarser);
+            pass.prepare(gpu, (shape, spacing), count, buffers)
         };
+        let normals = self.normals_pass.as_ref().filter(|_| shape.finer > 0).map(normals).transpose()?;
         Ok(BatchJob { heights, features, given, slots, nodes, normals })
     }
 
@@ -382,10 +379,9 @@ impl Pool {
             for new in nodes {
                 self.stage_patch(staged, config, (new.node, new.slot), holes)?;
                 let none = [0; NODE_FACTS as usize];
-                for row in
-                    [Some(new.slot as usize), self.size.map.map(|_| self.size.capacity + new.slot as usize)]
-                {
-                    let Some(row) = row else { continue };
+                let own = new.slot as usize;
+                let generated = self.size.map.map(|_| self.size.capacity + own);
+                for row in [Some(own), generated].into_iter().flatten() {
                     staged.elements(&self.facts, row * NODE_FACTS as usize, &none)?;
                 }
             }
