@@ -34,19 +34,26 @@ impl ModelFile {
     /// # Errors
     /// The errors of [`Model::from_file`].
     pub fn open(path: &Path) -> Result<Self, Error> {
-        Model::read(path, |bytes, beside| {
-            if is_package(bytes) {
-                let (model, package) = (Model::from_rlv(bytes)?, Package::new(bytes)?);
-                let header = package.header();
-                let images = header.images.iter().map(|image| bytes[image.range()].to_vec()).collect();
-                return Ok(Self { model, images, quantization: header.quantization });
-            }
-            if is_obj(path) {
-                return Ok(Model::from_obj_beside(bytes, beside)?.into());
-            }
-            let (model, images) = Model::from_gltf_with_files(bytes, beside)?;
-            Ok(Self { model, images, quantization: 0.0 })
-        })
+        Model::read(path, |bytes, beside| Self::from_bytes_beside(path, bytes, beside))
+    }
+
+    /// Reads a file from memory like [`Model::from_bytes_beside`], and keeps its images.
+    ///
+    /// # Errors
+    /// The errors of [`Model::from_bytes_beside`].
+    pub fn from_bytes_beside(name: &Path, bytes: &[u8], beside: Beside<'_>) -> Result<Self, InputError> {
+        if is_package(bytes) {
+            let (model, package) = (Model::from_rlv(bytes)?, Package::new(bytes)?);
+            let header = package.header();
+            let images = header.images.iter().filter_map(|image| bytes.get(image.range()));
+            let images = images.map(<[u8]>::to_vec).collect();
+            return Ok(Self { model, images, quantization: header.quantization });
+        }
+        if is_obj(name) {
+            return Ok(Model::from_obj_beside(bytes, beside)?.into());
+        }
+        let (model, images) = Model::from_gltf_with_files(bytes, beside)?;
+        Ok(Self { model, images, quantization: 0.0 })
     }
 }
 

@@ -277,11 +277,12 @@ impl Scene {
         }
     }
 
-    /// The drawables of all objects, each with the transition between its object's levels of detail.
+    /// The drawables of all objects and of their successors, each with the transition between its object's levels of detail.
     pub(crate) fn drawables(&self) -> impl Iterator<Item = (&dyn Drawable, Transition)> {
         self.objects.iter().flat_map(|object| {
             let transition = object.level_of_detail.transition();
-            object.drawables().map(move |drawable| (drawable, transition))
+            let next = object.successor.iter().flat_map(|next| next.drawables());
+            object.drawables().chain(next).map(move |drawable| (drawable, transition))
         })
     }
 

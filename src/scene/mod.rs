@@ -58,9 +58,11 @@ mod spawned;
 pub(crate) mod specialization;
 mod stage;
 mod statistics;
+mod successor;
 pub(crate) mod terrain;
 mod uploads;
 mod view;
+mod wanted;
 mod watch;
 pub(crate) mod wgsl;
 
@@ -128,6 +130,7 @@ pub use statistics::{
 pub use terrain::{EndlessLimits, EndlessStatistics, TerrainHole, TerrainSource};
 pub(crate) use view::ViewShadow;
 pub use view::{DitherPattern, View};
+pub use wanted::Wanted;
 pub use watch::{InstanceBone, WatchedBone, WatchedBones};
 
 use crate::asset::Light;

@@ -95,6 +95,11 @@ pub(super) trait ObjectKind: Any + Debug + wgpu::WasmNotSendSync {
         let _ = other;
     }
 
+    /// Takes over the state of instances from `last`, the same kind with another model, whose place it takes.
+    fn follow(&mut self, last: &mut dyn ObjectKind) {
+        let _ = last;
+    }
+
     /// Sets whether motion history is kept. It takes effect when the object is refreshed.
     fn keep_last(&mut self, keeps: bool) {
         let _ = keeps;

@@ -167,7 +167,7 @@ impl Scene {
         self.add_checked(object).await
     }
 
-    fn character(
+    pub(super) fn character(
         &self,
         model: &Model,
         capacity: usize,
@@ -182,7 +182,7 @@ impl Scene {
         Ok(object.awaiting(pending))
     }
 
-    fn mesh(&self, model: &Model, capacity: usize) -> Result<Object, Error> {
+    pub(super) fn mesh(&self, model: &Model, capacity: usize) -> Result<Object, Error> {
         let (gpu, pending) = self.uploader();
         let object = Object::of_mesh(&gpu, &self.layouts_of_groups, model, capacity)?;
         Ok(object.awaiting(pending))
@@ -368,9 +368,20 @@ impl Scene {
         object: ObjectId,
         level_of_detail: &LevelOfDetail,
     ) -> Result<(), Error> {
+        let levels = self.object_at(object)?.newest().errors.len();
+        self.set_level_of_detail_among(object, level_of_detail, levels)
+    }
+
+    /// [`Scene::set_level_of_detail`] for a model that may get as many as `levels` levels later.
+    pub(crate) fn set_level_of_detail_among(
+        &mut self,
+        object: ObjectId,
+        level_of_detail: &LevelOfDetail,
+        levels: usize,
+    ) -> Result<(), Error> {
         let entry = self.object_mut(object)?;
-        level_of_detail.validate(entry.errors.len())?;
-        if level_of_detail.transition == Transition::Geomorph && !entry.can_morph() {
+        level_of_detail.validate(levels)?;
+        if level_of_detail.transition == Transition::Geomorph && !entry.newest().can_morph() {
             let bound = "must have levels of detail with partners";
             return Err(InputError::new("object.levels", entry.errors.len(), bound).into());
         }
@@ -399,7 +410,7 @@ impl Scene {
     /// # Errors
     /// [`InputError`] for an object that is not of this scene.
     pub fn can_morph(&self, object: ObjectId) -> Result<bool, InputError> {
-        Ok(self.object_at(object)?.can_morph())
+        Ok(self.object_at(object)?.newest().can_morph())
     }
 
     pub(super) fn object_mut(&mut self, object: ObjectId) -> Result<&mut Object, InputError> {

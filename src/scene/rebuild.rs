@@ -110,6 +110,12 @@ impl Scene {
     /// # Errors
     /// As for `Scene::rebuild`.
     pub async fn rebuild_async(&mut self, gpu: &Gpu) -> Result<(), Error> {
+        // The data of new models is on the host, so that they need not wait.
+        self.objects
+            .iter_mut()
+            .filter_map(|object| object.successor.as_mut())
+            .for_each(|next| next.pending = None);
+        self.succeed();
         let layouts = SceneLayouts::new(gpu)?;
         let passes = Passes::new(gpu)?;
         let timer = if self.counted { StageTimer::new(gpu)? } else { None };

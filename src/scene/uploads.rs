@@ -48,7 +48,8 @@ impl Scene {
 
     /// The number of bytes of added objects that still wait on the host; see [`Scene::set_upload_budget`].
     pub fn waiting(&self) -> usize {
-        self.objects.iter().filter_map(|object| object.pending.as_ref()).map(PendingUploads::len).sum()
+        let all = self.objects.iter().flat_map(|object| object.uploads());
+        all.map(PendingUploads::len).sum()
     }
 
     /// Whether data of an object still waits on the host. Such an object is not drawn; see
@@ -69,7 +70,8 @@ impl Scene {
         (gpu, Some(pending))
     }
 
-    /// Uploads waiting data of all objects, up to the budget of a frame. Returns the number of uploaded bytes.
+    /// Uploads waiting data of all objects, up to the budget of a frame, and shows the models that are complete. Returns the
+    /// number of uploaded bytes.
     pub(super) fn upload(&mut self) -> Result<usize, Error> {
         let most = self.upload_budget.unwrap_or(usize::MAX);
         let mut sent = 0;
@@ -78,7 +80,11 @@ impl Scene {
                 break;
             }
             sent += object.upload(&self.gpu, most - sent)?;
+            if let Some(next) = object.successor.as_mut().filter(|_| sent < most) {
+                sent += next.upload(&self.gpu, most - sent)?;
+            }
         }
+        self.succeed();
         Ok(sent)
     }
 }
@@ -87,6 +93,12 @@ impl Object {
     /// Whether the object is shown, and all of its data has arrived on the device.
     pub(super) fn is_drawn(&self) -> bool {
         self.is_visible && self.pending.is_none()
+    }
+
+    /// The waiting data of the object, and of its successor.
+    fn uploads(&self) -> impl Iterator<Item = &PendingUploads> {
+        let next = self.successor.as_ref().and_then(|next| next.pending.as_ref());
+        self.pending.iter().chain(next)
     }
 
     /// Uploads about `most` bytes of the object's waiting data. Returns the number of uploaded bytes.

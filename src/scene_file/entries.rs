@@ -1,6 +1,6 @@
 //! The checked contents of a scene file, before the files that it names are read.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Quat, Vec3};
 
@@ -69,6 +69,14 @@ pub(super) enum EntryKind {
 }
 
 impl ObjectEntry {
+    /// The path of the package that the object shows. Reliefs do not change later, so theirs is none.
+    pub fn package(&self) -> Option<&Path> {
+        let ModelSource::One(Source::File(path)) = &self.source else { return None };
+        let is_package = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rlv"));
+        let changes = !matches!(self.kind, EntryKind::Relief(_));
+        Some(&**path).filter(|_| is_package && changes)
+    }
+
     /// Number of listed and scattered instances.
     pub fn count(&self) -> usize {
         self.instances.len() + self.scatter.as_ref().map_or(0, |scatter| scatter.count as usize)

@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeSet, HashMap};
 use std::io::Cursor;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use image::{DynamicImage, Rgba, RgbaImage};
 
-use super::builtin::BuiltIns;
+use super::builtin::{BuiltIns, NoBuiltIns};
 use super::entries::{
     ElevationEntry, EntryKind, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Source, TerrainEntry,
 };
@@ -46,12 +46,35 @@ pub(super) enum Loaded {
     /// A model with levels of detail.
     Model(Arc<Model>),
     Relief(Box<Relief>),
+    /// The package is not there yet.
+    Waiting,
 }
 
 impl LoadedScene {
     /// The checked contents of the scene file.
     pub fn file(&self) -> &SceneFile {
         &self.file
+    }
+
+    /// Gives the objects of a package their model, with the levels of detail that are there. `package` is the path in the scene file.
+    /// [`World::show_package_async`](super::World::show_package_async) shows it.
+    ///
+    /// # Errors
+    /// [`InputError`] with the path of the name in the scene file, in these cases: no object has this package; the model does not
+    /// suit an object's use; it does not have a clip.
+    pub fn set_package(&mut self, package: &Path, model: Model) -> Result<(), InputError> {
+        let entries = self.file.of_package(package);
+        if entries.is_empty() {
+            return Err(InputError::new("package", package.display(), "must be the file of an object"));
+        }
+        let nothing = |_: &Path| Err(std::io::ErrorKind::NotFound.into());
+        let mut files = Files::new(&nothing, &NoBuiltIns);
+        files.models.insert(Source::File(package.to_owned()), vec![Arc::new(model)]);
+        let own: Vec<ObjectEntry> = entries.iter().map(|at| self.file.objects[*at].clone()).collect();
+        for (at, loaded) in entries.into_iter().zip(files.objects(&own)?) {
+            self.objects[at] = loaded;
+        }
+        Ok(())
     }
 
     /// Reads a scene file, and the files that it names, from the file system. Names with the prefix `builtin:` come from
@@ -87,7 +110,35 @@ impl SceneFile {
         read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
         built_ins: &dyn BuiltIns,
     ) -> Result<LoadedScene, InputError> {
-        let mut files = Files::new(read, built_ins);
+        self.load_with(Files::new(read, built_ins))
+    }
+
+    /// Like [`SceneFile::load`], but does not read packages (`.rlv`). Their objects are missing until
+    /// [`LoadedScene::set_package`]. Packages that carry reliefs are read, as reliefs do not change later.
+    ///
+    /// # Errors
+    /// As for [`SceneFile::load`].
+    pub fn load_without_packages(
+        &self,
+        read: &dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
+        built_ins: &dyn BuiltIns,
+    ) -> Result<LoadedScene, InputError> {
+        self.load_with(Files { leaves_packages: true, ..Files::new(read, built_ins) })
+    }
+
+    /// Paths of the packages whose objects [`SceneFile::load_without_packages`] leaves out, ascending.
+    pub fn packages(&self) -> Vec<PathBuf> {
+        let paths = self.objects.iter().filter_map(ObjectEntry::package);
+        paths.map(Path::to_owned).collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
+    /// Indices of the objects of a package.
+    pub(super) fn of_package(&self, package: &Path) -> Vec<usize> {
+        let entries = self.objects.iter().enumerate();
+        entries.filter(|(_, entry)| entry.package() == Some(package)).map(|(at, _)| at).collect()
+    }
+
+    fn load_with(&self, mut files: Files<'_>) -> Result<LoadedScene, InputError> {
         let zones = self.terrain.iter().flat_map(|terrain| &terrain.recipe.config.zones).enumerate();
         let texture = |(index, zone): (usize, &crate::terrain::config::Zone)| match zone.texture_at(index) {
             ZoneTexture::BuiltIn(kind) => Ok(TerrainTexture::built_in(kind)),
@@ -109,6 +160,8 @@ impl SceneFile {
 struct Files<'a> {
     read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>,
     built_ins: &'a dyn BuiltIns,
+    /// Whether the objects of packages are left out.
+    leaves_packages: bool,
     /// The levels of detail that each source has, the finest first; at least one.
     models: HashMap<Source, Vec<Arc<Model>>>,
     needs: HashMap<ModelSource, Needs>,
@@ -135,7 +188,7 @@ struct Needs {
 impl<'a> Files<'a> {
     fn new(read: &'a dyn Fn(&Path) -> std::io::Result<Vec<u8>>, built_ins: &'a dyn BuiltIns) -> Self {
         let (models, needs, levelled) = Default::default();
-        Self { read, built_ins, models, needs, levelled }
+        Self { read, built_ins, leaves_packages: false, models, needs, levelled }
     }
 
     /// The elevation map of a terrain.
@@ -167,8 +220,11 @@ impl<'a> Files<'a> {
     }
 
     fn objects(&mut self, entries: &[ObjectEntry]) -> Result<Vec<Loaded>, InputError> {
-        entries.iter().try_for_each(|entry| self.add_needs(entry))?;
-        entries.iter().map(|entry| self.object(entry)).collect()
+        let leaves_packages = self.leaves_packages;
+        let is_left = |entry: &ObjectEntry| leaves_packages && entry.package().is_some();
+        entries.iter().filter(|entry| !is_left(entry)).try_for_each(|entry| self.add_needs(entry))?;
+        let object = |entry| if is_left(entry) { Ok(Loaded::Waiting) } else { self.object(entry) };
+        entries.iter().map(object).collect()
     }
 
     /// Reads an object's model, and records the object's use of it.

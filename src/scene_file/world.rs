@@ -1,5 +1,6 @@
 //! Builds the scene that a file describes.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
@@ -13,6 +14,7 @@ use super::spec::SunOptions;
 use crate::asset::Model;
 use crate::gpu::Gpu;
 use crate::scene::{LevelOfDetail, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition};
+use crate::shared::lod::object::OBJECT_LEVELS;
 use crate::terrain::recipe::Recipe;
 use crate::{Error, InputError};
 
@@ -21,7 +23,8 @@ use crate::{Error, InputError};
 pub struct World {
     /// The scene, at time 0.
     pub scene: Scene,
-    /// The scene's objects, in the order of the file: terrain, meshes, characters.
+    /// The scene's objects, in the order of the file: terrain, meshes, characters. Objects whose package arrives later
+    /// ([`World::show_package_async`]) follow in the order of their arrival.
     pub objects: Vec<WorldObject>,
     /// The camera and its path over time.
     pub camera: CameraPath,
@@ -31,6 +34,8 @@ pub struct World {
     pub shadow: Option<SunOptions>,
     /// The background colour: linear red, green and blue.
     pub background: [f32; 3],
+    /// For each entry of meshes and characters, its index in `objects`; `None` as long as its package is missing.
+    shown: Vec<Option<usize>>,
 }
 
 /// An object of the scene, and its source in the scene file.
@@ -114,14 +119,30 @@ impl LoadedScene {
             let name = terrain.recipe.config.seed.clone();
             objects.push(WorldObject { object, kind: WorldKind::Terrain, name, model: None });
         }
-        for (entry, loaded) in file.objects.iter().zip(&self.objects) {
-            let found = added(&mut scene, entry, loaded).await?;
-            self.set_level_of_detail(&mut scene, entry, found.object)?;
-            self.spawn(&mut scene, land, entry, &found)?;
-            objects.push(found);
+        let mut shown = vec![None; file.objects.len()];
+        for (at, loaded) in self.objects.iter().enumerate() {
+            if !matches!(loaded, Loaded::Waiting) {
+                let found = self.add(&mut scene, land, at).await?;
+                shown[at] = Some(objects.len());
+                objects.push(found);
+            }
         }
         let (camera, quality, background) = (file.camera.clone(), file.quality, file.background);
-        Ok(World { scene, objects, camera, quality, shadow: file.shadow, background })
+        Ok(World { scene, objects, camera, quality, shadow: file.shadow, background, shown })
+    }
+
+    /// Adds the object of an entry, with its instances.
+    async fn add(
+        &self,
+        scene: &mut Scene,
+        land: Option<ObjectId>,
+        entry: usize,
+    ) -> Result<WorldObject, Error> {
+        let (entry, loaded) = (&self.file.objects[entry], &self.objects[entry]);
+        let found = added(scene, entry, loaded).await?;
+        self.set_level_of_detail(scene, entry, found.object)?;
+        self.spawn(scene, land, entry, &found)?;
+        Ok(found)
     }
 
     /// Sets how an object's levels of detail are chosen, and their transition. If the object's entry names a transition, the
@@ -140,7 +161,12 @@ impl LoadedScene {
             return Ok(());
         }
         let level_of_detail = LevelOfDetail { transition, ..level_of_detail };
-        scene.set_level_of_detail(object, &level_of_detail).map_err(|error| match error {
+        // The finer levels of a package may arrive later.
+        let set = match entry.package().is_some() {
+            true => scene.set_level_of_detail_among(object, &level_of_detail, OBJECT_LEVELS as usize),
+            false => scene.set_level_of_detail(object, &level_of_detail),
+        };
+        set.map_err(|error| match error {
             Error::Input(error) if transition == Transition::Geomorph && error.path == "object.levels" => {
                 let path = format!("{}.transition", entry.path);
                 InputError::new(path, "geomorph", format!("{} {}", error.path, error.bound)).into()
@@ -205,6 +231,41 @@ impl LoadedScene {
     }
 }
 
+impl World {
+    /// Shows a package that was given to `loaded` ([`LoadedScene::set_package`]): adds its objects with their instances, or
+    /// gives the objects the new model ([`Scene::set_model`]). Then renderers must be prepared again.
+    ///
+    /// # Errors
+    /// Same as [`LoadedScene::build_async`].
+    pub async fn show_package_async(&mut self, loaded: &LoadedScene, package: &Path) -> Result<(), Error> {
+        let is_land = |object: &&WorldObject| object.kind == WorldKind::Terrain;
+        let land = self.objects.iter().find(is_land).map(|object| object.object);
+        for at in loaded.file.of_package(package) {
+            let Loaded::Model(model) = &loaded.objects[at] else { continue };
+            let entry = &loaded.file.objects[at];
+            let Some(shown) = self.shown[at] else {
+                let found = loaded.add(&mut self.scene, land, at).await?;
+                self.shown[at] = Some(self.objects.len());
+                self.objects.push(found);
+                continue;
+            };
+            let found = &mut self.objects[shown];
+            match &entry.kind {
+                EntryKind::Character(_) => {
+                    self.scene.set_character_model(found.object, model, &entry.detail.options())
+                }
+                _ => self.scene.set_model(found.object, model),
+            }
+            .map_err(|error| below(&entry.path, error))?;
+            found.model = Some(model.clone());
+            let object = found.object;
+            loaded.set_level_of_detail(&mut self.scene, entry, object)?;
+        }
+        self.scene.gpu().check_async().await?;
+        Ok(())
+    }
+}
+
 /// Start time of a clip in seconds. With this start time, the fraction `phase` of the clip has been played at the time
 /// `play.start`.
 fn begun(play: &PlayEntry, model: &Model, phase: f64) -> Result<f64, InputError> {
@@ -227,10 +288,13 @@ async fn added(scene: &mut Scene, entry: &ObjectEntry, loaded: &Loaded) -> Resul
             (WorldKind::Character, scene.add_character_with_async(model, capacity, &options).await)
         }
         (Loaded::Model(model), _) => (WorldKind::Mesh, scene.add_mesh_async(model, capacity).await),
+        (Loaded::Waiting, _) => {
+            return Err(InputError::new(&entry.path, "not loaded", "must have its package").into());
+        }
     };
     let model = match loaded {
-        Loaded::Relief(_) => None,
         Loaded::Model(model) => Some(model.clone()),
+        Loaded::Relief(_) | Loaded::Waiting => None,
     };
     // The fields of options are fields of the entry.
     let in_entry = |error: Error| match error {

@@ -8,6 +8,7 @@ mod cook;
 mod creases;
 mod crowd;
 mod demo;
+mod fetch;
 mod info;
 mod memory;
 mod output;
@@ -16,6 +17,7 @@ mod priorities;
 mod progress;
 mod relief;
 mod scene;
+mod serve;
 mod shaders;
 mod simplify;
 mod skin;
@@ -58,6 +60,9 @@ enum Command {
     Skin(skin::Skin),
     Simplify(Box<simplify::Simplify>),
     Cook(cook::Cook),
+    Serve(Box<serve::Serve>),
+    Export(serve::Export),
+    Fetch(fetch::Fetch),
     Crowd(Box<crowd::Crowd>),
     Sweep(Box<sweep::Sweep>),
     Verify(verify::Verify),
@@ -103,6 +108,9 @@ fn main() -> ExitCode {
         Command::Skin(command) => command.run(&context),
         Command::Simplify(command) => command.run(&context),
         Command::Cook(command) => command.run(),
+        Command::Serve(command) => command.run(),
+        Command::Export(command) => command.run(),
+        Command::Fetch(command) => command.run(),
         Command::Crowd(command) => command.run(&context),
         Command::Sweep(command) => command.run(&context),
         Command::Bench(command) => command.run(&context),

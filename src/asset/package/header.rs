@@ -253,7 +253,10 @@ impl PackageChunk {
     }
 
     /// Refuses bytes that are not those of the chunk. `path` names the chunk in errors.
-    pub(super) fn check(&self, path: &str, bytes: &[u8]) -> Result<(), InputError> {
+    ///
+    /// # Errors
+    /// [`InputError`] for another number of bytes, and for another SHA-256.
+    pub fn check(&self, path: &str, bytes: &[u8]) -> Result<(), InputError> {
         let length = self.end - self.start;
         InputError::check_same(format!("{path}.len"), bytes.len(), length, "the length in the header")?;
         let sum = sum(bytes);

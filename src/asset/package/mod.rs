@@ -107,16 +107,17 @@ impl Package {
         Ok(Self { header, parts, meshes, contexts, room, levels: 0, images, budget })
     }
 
-    /// Reads a whole package without its images.
+    /// Reads a whole package, or one that ends with a level, without its images.
     fn with_levels(bytes: &[u8]) -> Result<Self, InputError> {
         let mut package = Self::new(bytes)?;
-        InputError::check_same(
-            "package.len",
-            bytes.len(),
-            package.header.bytes(),
-            "the end of the last chunk",
-        )?;
-        for level in package.header.levels.clone() {
+        let levels = package.header.levels.clone();
+        let is_end = |level: &PackageLevel| level.chunk.end == bytes.len();
+        let count = levels.iter().position(is_end).map_or(levels.len(), |at| at + 1);
+        if count == levels.len() && !levels.last().is_some_and(is_end) {
+            let reason = "the end of the last chunk; a shorter package must end with a level";
+            InputError::check_same("package.len", bytes.len(), package.header.bytes(), reason)?;
+        }
+        for level in &levels[..count] {
             package.add_level(&bytes[level.chunk.range()])?;
         }
         Ok(package)
@@ -130,6 +131,11 @@ impl Package {
     /// Number of levels that were read.
     pub fn levels(&self) -> usize {
         self.levels
+    }
+
+    /// Number of vertices of each mesh at the finest level that was read. Finer levels add vertices behind them.
+    pub fn mesh_vertices(&self) -> Vec<usize> {
+        self.meshes.iter().map(LeveledMesh::vertices).collect()
     }
 
     /// Reads the chunk of the next finer level.
@@ -217,13 +223,14 @@ impl Package {
 }
 
 impl Model {
-    /// Reads a whole package from memory.
+    /// Reads a package from memory: a whole one, or the beginning of one that ends with a level. Then the model has that level
+    /// and the coarser ones, and materials show no images that are missing.
     ///
     /// # Errors
     /// [`InputError`] in the cases of [`Package`], and for bytes that are missing or too many.
     pub fn from_rlv(bytes: &[u8]) -> Result<Self, InputError> {
         let mut package = Package::with_levels(bytes)?;
-        for image in package.header.images.clone() {
+        for image in package.header.images.clone().iter().filter(|image| image.end <= bytes.len()) {
             package.add_image(&bytes[image.range()])?;
         }
         package.model()

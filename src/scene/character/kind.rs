@@ -65,6 +65,12 @@ impl ObjectKind for Character {
         }
     }
 
+    fn follow(&mut self, last: &mut dyn ObjectKind) {
+        if let Some(last) = last.downcast_mut::<Self>() {
+            self.take_state(last);
+        }
+    }
+
     fn keep_last(&mut self, keeps: bool) {
         self.keeps_last = keeps;
     }

@@ -14,8 +14,8 @@ mod runtime;
 
 use std::collections::BTreeSet;
 
-use crate::Error;
 use crate::animation::RootMotion;
+use crate::asset::Model;
 use crate::gpu::Gpu;
 use crate::scene::instances::Changed;
 use crate::scene::mesh;
@@ -26,6 +26,7 @@ use crate::scene::playing::Playing;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
 use crate::skinning::merged::Merged;
+use crate::{Error, InputError};
 use detail::Detail;
 pub use detail::SkeletonStatistics;
 pub(super) use detail::TICKS;
@@ -135,6 +136,30 @@ impl Character {
         self.layers.iter_mut().for_each(|layer| layer.resize(capacity));
         // A new scene starts with epoch 0. With the same epoch, start times are rounded as in a new scene.
         self.epoch = 0.0;
+    }
+
+    /// Refuses a model that this character's instances cannot go on with.
+    ///
+    /// # Errors
+    /// [`InputError`] for other bones, other clips, or another number of layers.
+    pub fn check_successor(&self, model: &Model, options: &CharacterOptions<'_>) -> Result<(), InputError> {
+        let own = &self.merged.model;
+        let is_same = own.skeleton == model.skeleton;
+        InputError::check(is_same, "model.skeleton", "other bones", || "must be that of the old model")?;
+        let is_same = options.root_motion.is_some() == self.motions.is_some()
+            && (self.motions.is_some() || own.clips == model.clips);
+        InputError::check(is_same, "model.clips", "other clips", || "must be those of the old model")?;
+        let layers = self.layers.len();
+        InputError::check_same("options.layers.len", options.layers.len(), layers, "that of the old model")
+    }
+
+    /// Takes over clips, layers and driven bones of all instances from the character whose place this one takes.
+    fn take_state(&mut self, last: &mut Self) {
+        self.plays = std::mem::take(&mut last.plays);
+        self.layers = std::mem::take(&mut last.layers);
+        self.driven = std::mem::take(&mut last.driven);
+        self.watched = std::mem::take(&mut last.watched);
+        self.start_afresh(self.plays.len());
     }
 
     /// A sphere around an instance that plays the first clip, in model space.

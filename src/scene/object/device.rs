@@ -15,6 +15,10 @@ impl Object {
         let bound = || format!("must be at most {MAX_CAPACITY}: add another object");
         InputError::check(capacity < MAX_CAPACITY, "object.capacity", 2 * capacity, bound)?;
         let capacity = (2 * capacity).min(MAX_CAPACITY);
+        if let Some(next) = &mut self.successor {
+            next.renew(gpu, layouts, capacity)?;
+            next.instances.grow(capacity);
+        }
         self.renew(gpu, layouts, capacity)?;
         self.instances.grow(capacity);
         Ok(())
@@ -44,9 +48,14 @@ impl Object {
         let OnDevice { chunks, other } = on_device;
         self.kind.adopt(other);
         self.chunks = chunks;
+        self.pending = None;
+        self.start_afresh();
+    }
+
+    /// Resets what depends on the kind and its chunks, after they were replaced.
+    pub(in crate::scene) fn start_afresh(&mut self) {
         self.mark_transition();
         self.lod_bias = 1.0;
-        self.pending = None;
         (self.is_retuned, self.is_rebound, self.fitted) = (false, false, 0);
         self.instances.change_all();
     }

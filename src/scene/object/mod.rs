@@ -50,7 +50,7 @@ pub(crate) struct Object {
     /// Budgets count the object's triangles in units of 2^`triangle_unit`.
     triangle_unit: u32,
     /// Middle and half size of a box around the model, in model space.
-    model_box: [Vec3; 2],
+    pub(super) model_box: [Vec3; 2],
     /// LOD bias: factor of the allowed displacement. It is 1, or more if the device has no memory for the finer levels.
     pub(super) lod_bias: f32,
     /// Dirty: LOD bias or visibility must be uploaded again.
@@ -62,6 +62,8 @@ pub(crate) struct Object {
     pub(super) is_visible: bool,
     /// Data of the object that still waits on the host to be uploaded.
     pub(super) pending: Option<PendingUploads>,
+    /// The object that takes this one's place once its data has arrived.
+    pub(super) successor: Option<Box<Object>>,
     /// Materials and images of a mesh or a character; `None` for other kinds.
     pub(super) looks: Option<Looks>,
     /// The draws of a chunk, [`OBJECT_LEVELS`] for each part. Their instance counts are 0.
@@ -99,6 +101,7 @@ impl Object {
             handle: 0,
             is_visible: true,
             pending: None,
+            successor: None,
             looks: None,
             draws,
             chunks,

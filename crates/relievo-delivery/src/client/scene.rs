@@ -1,0 +1,185 @@
+//! A scene file from a server, whose objects appear as they arrive.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use relievo::scene::View;
+use relievo::scene_file::{BuiltIns, LoadedScene, SceneFile, World};
+use relievo::{Error, InputError};
+
+use super::fetcher::{Fetcher, FetcherOptions, FileKey, ModelKey, Want};
+use super::transport::Transport;
+use super::url_beside;
+
+/// Weight of an object that no view sees: its coarsest level is fetched after everything else, so that something is there when it
+/// comes into view.
+const UNSEEN: f32 = 1e-6;
+
+/// Loads a scene file over HTTP. The scene is there once its terrain can be made; meshes and characters appear with their coarsest
+/// level, and become finer as views need it.
+///
+/// ```no_run
+/// use std::time::Instant;
+///
+/// use relievo::gpu::Gpu;
+/// use relievo::render::Renderer;
+/// use relievo_delivery::client::{FetcherOptions, HttpTransport, StreamedScene};
+///
+/// # fn example(gpu: &Gpu, renderer: &mut Renderer) -> Result<(), relievo::Error> {
+/// let begun = Instant::now();
+/// let url = "http://127.0.0.1:8080/scenes/walk.json";
+/// let mut streamed = StreamedScene::open(url, HttpTransport::new(), FetcherOptions::default());
+/// let loaded = loop {
+///     if let Some(loaded) = streamed.begin(begun.elapsed(), &relievo_samples::Samples)? {
+///         break loaded;
+///     }
+/// };
+/// let mut world = loaded.build(gpu)?;
+/// let view = world.scene.view(world.quality)?;
+/// // In each frame, once the view has a camera:
+/// if streamed.update(&mut world, &[&view], begun.elapsed())? {
+///     renderer.prepare(&world.scene)?;
+/// }
+/// # Ok(())
+/// # }
+/// ```
+pub struct StreamedScene<T> {
+    fetcher: Fetcher<T>,
+    url: String,
+    text: FileKey,
+    file: Option<SceneFile>,
+    /// The files that the scene needs at once.
+    files: BTreeMap<PathBuf, FileKey>,
+    packages: BTreeMap<PathBuf, ModelKey>,
+    loaded: Option<LoadedScene>,
+}
+
+impl<T: Transport> StreamedScene<T> {
+    /// Begins to fetch the scene file at an address.
+    pub fn open(url: &str, transport: T, options: FetcherOptions) -> Self {
+        let mut fetcher = Fetcher::new(transport, options);
+        let text = fetcher.add_file(url);
+        let (file, files, packages, loaded) = Default::default();
+        Self { fetcher, url: url.to_owned(), text, file, files, packages, loaded }
+    }
+
+    /// Takes in what has arrived, without blocking. Returns the scene once everything but its packages is there. Names with the
+    /// prefix `builtin:` come from `built_ins`.
+    ///
+    /// # Errors
+    /// [`Error::File`] for files that cannot be fetched; [`Error::InputFile`] with the path of a mistake in the scene file.
+    pub fn begin(&mut self, now: Duration, built_ins: &dyn BuiltIns) -> Result<Option<&LoadedScene>, Error> {
+        self.fetcher.update(now);
+        let path = PathBuf::from(&self.url);
+        let in_file = |source: InputError| Error::InputFile { path: path.clone(), source };
+        if self.file.is_none() {
+            let Some(text) = self.fetcher.file(self.text).map_err(Error::from)? else { return Ok(None) };
+            let text = str::from_utf8(text).map_err(|error| {
+                in_file(InputError::new("scene", "bytes", format!("must be text: {error}")))
+            })?;
+            let file = SceneFile::from_json(text).map_err(in_file)?;
+            for path in file.packages() {
+                let key = self.fetcher.add(&url_beside(&self.url, &path));
+                self.packages.insert(path, key);
+            }
+            for path in file.files().into_iter().filter(|path| !self.packages.contains_key(path)) {
+                let key = self.fetcher.add_file(&url_beside(&self.url, &path));
+                self.files.insert(path, key);
+            }
+            self.file = Some(file);
+            self.want(None, &[])?;
+        }
+        let mut contents = BTreeMap::new();
+        for (path, key) in &self.files {
+            let Some(bytes) = self.fetcher.file(*key).map_err(Error::from)? else { return Ok(None) };
+            contents.insert(path.as_path(), bytes);
+        }
+        if let (None, Some(file)) = (&self.loaded, &self.file) {
+            let read = |path: &Path| {
+                let found = contents.get(path).map(|bytes| bytes.to_vec());
+                found.ok_or_else(|| io::Error::from(io::ErrorKind::NotFound))
+            };
+            self.loaded = Some(file.load_without_packages(&read, built_ins).map_err(in_file)?);
+        }
+        Ok(self.loaded.as_ref())
+    }
+
+    /// Shows what has arrived, and asks for what views with cameras need next. Call it once a frame, before
+    /// [`Scene::record`](relievo::scene::Scene::record). Whether the scene has changed, so that renderers must be prepared again.
+    ///
+    /// # Errors
+    /// [`Error`] for packages that do not suit the scene, and for failures of the device. What cannot be fetched is told by
+    /// [`StreamedScene::fetcher`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn update(&mut self, world: &mut World, views: &[&View], now: Duration) -> Result<bool, Error> {
+        let gpu = world.scene.gpu().clone();
+        gpu.block_on(self.update_async(world, views, now))
+    }
+
+    /// Same as `StreamedScene::update`, but completes once the device has reported its errors.
+    ///
+    /// # Errors
+    /// Same as `StreamedScene::update`.
+    pub async fn update_async(
+        &mut self,
+        world: &mut World,
+        views: &[&View],
+        now: Duration,
+    ) -> Result<bool, Error> {
+        let fetched = self.fetcher.update(now);
+        let mut has_changed = false;
+        for (path, key) in &self.packages {
+            let is_new = fetched.iter().any(|own| own.model == *key && own.levels > 0);
+            let Some(loaded) = self.loaded.as_mut().filter(|_| is_new) else { continue };
+            let in_file = |source| Error::InputFile { path: path.clone(), source };
+            let Some(model) = self.fetcher.model(*key).map_err(in_file)? else { continue };
+            loaded.set_package(path, model).map_err(in_file)?;
+            world.show_package_async(loaded, path).await?;
+            has_changed = true;
+        }
+        self.want(Some(world), views)?;
+        Ok(has_changed)
+    }
+
+    /// What fetches the packages: its states, and what came over the wire.
+    pub fn fetcher(&self) -> &Fetcher<T> {
+        &self.fetcher
+    }
+
+    /// Mutable form of [`StreamedScene::fetcher`].
+    pub fn fetcher_mut(&mut self) -> &mut Fetcher<T> {
+        &mut self.fetcher
+    }
+
+    /// The packages of the scene, by their paths in the scene file.
+    pub fn packages(&self) -> impl Iterator<Item = (&Path, ModelKey)> {
+        self.packages.iter().map(|(path, key)| (path.as_path(), *key))
+    }
+
+    /// Whether all that views need is there, or cannot be fetched.
+    pub fn is_settled(&self) -> bool {
+        self.loaded.is_some() && self.fetcher.is_settled()
+    }
+
+    /// Tells the fetcher what views need of the objects of each package.
+    fn want(&mut self, world: Option<&World>, views: &[&View]) -> Result<(), Error> {
+        let mut wants = Vec::new();
+        for (path, key) in &self.packages {
+            let mut want = Want { model: *key, error: f32::MAX, weight: UNSEEN };
+            let name = path.display().to_string();
+            let objects = world.iter().flat_map(|world| &world.objects).filter(|object| object.name == name);
+            for object in objects {
+                let Some(scene) = world.map(|world| &world.scene) else { continue };
+                if let Some(wanted) = scene.wanted(object.object, views)? {
+                    want.error = want.error.min(wanted.error);
+                    want.weight += wanted.area;
+                }
+            }
+            wants.push(want);
+        }
+        self.fetcher.want(&wants);
+        Ok(())
+    }
+}

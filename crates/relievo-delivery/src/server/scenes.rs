@@ -1,0 +1,143 @@
+//! Scene files of a server. The files that they name are served by the hashes of their contents; models become packages.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use relievo::InputError;
+use relievo::scene_file::{BuiltIns, SceneFile};
+use serde_json::Value;
+
+use super::ServeError;
+use super::resource::{Compression, Lifetime, Resource};
+use super::site::{Files, read_file};
+use crate::sha256;
+
+/// Fields of a scene file that hold names of files, or lists of such names.
+const FIELDS: [&str; 7] = ["file", "levels", "relief", "albedo", "normal", "texture", "features"];
+
+const BUILT_IN: &str = "builtin:";
+
+/// A scene file, and the models that it names.
+pub(super) struct SceneSource {
+    pub path: PathBuf,
+    /// The name below `scenes/`, without extension.
+    pub name: String,
+    text: Value,
+    /// Names of models that become packages, as the scene file has them.
+    pub models: Vec<String>,
+}
+
+impl SceneSource {
+    /// Reads a scene file, and adds the files that are not models.
+    pub fn open(path: &Path, built_ins: &dyn BuiltIns, files: &mut Files) -> Result<Self, ServeError> {
+        let in_file = |source: InputError| ServeError::File { path: path.to_owned(), source };
+        let text = read_file(path)?;
+        let text = String::from_utf8(text)
+            .map_err(|error| in_file(InputError::new("scene", "bytes", format!("must be text: {error}"))))?;
+        SceneFile::from_json(&text).map_err(in_file)?;
+        let json = |error| in_file(InputError::new("scene", "JSON", format!("cannot be read: {error}")));
+        let mut text: Value = serde_json::from_str(&text).map_err(json)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let mut models = Vec::new();
+        let mut renamed = BTreeMap::new();
+        let mut refused = None;
+        each_name(&mut text, &mut |field, name| {
+            let is_model = field == "file" && (is_model(name) || built_ins.model(built_in(name)).is_ok());
+            if is_model {
+                models.push(name.clone());
+            } else if field == "levels" && !name.starts_with(BUILT_IN) && !name.ends_with(".glb") {
+                let bound = "must be a .glb file: files beside others are not served";
+                let error = InputError::new("levels", name.as_str(), bound);
+                refused = refused.take().or(Some(ServeError::File { path: path.to_owned(), source: error }));
+            } else if !name.starts_with(BUILT_IN) && !is_built_in_texture(field, name) {
+                match added(path, name, files) {
+                    Ok(object) => drop(renamed.insert(name.clone(), object)),
+                    Err(error) => refused = refused.take().or(Some(error)),
+                }
+            }
+        });
+        if let Some(error) = refused {
+            return Err(error);
+        }
+        rename(&mut text, &renamed);
+        models.sort();
+        models.dedup();
+        Ok(Self { path: path.to_owned(), name, text, models })
+    }
+
+    /// Reads a file that the scene file, or one of its models in the same folder, names.
+    pub fn read(&self, name: &Path) -> io::Result<Vec<u8>> {
+        std::fs::read(self.path.parent().unwrap_or(Path::new("")).join(name))
+    }
+
+    /// The scene file with the paths of packages, by the names of models, in the place of these names.
+    pub fn with_packages(&self, packages: &BTreeMap<String, String>) -> Resource {
+        let mut text = self.text.clone();
+        let relative = packages.iter().map(|(name, path)| (name.clone(), format!("../{path}"))).collect();
+        rename(&mut text, &relative);
+        Resource::new(
+            text.to_string().into_bytes(),
+            "application/json",
+            Lifetime::Revalidated,
+            Compression::Allowed,
+        )
+    }
+}
+
+/// The name of a built-in model; for other names, one that does not exist.
+pub(super) fn built_in(name: &str) -> &str {
+    name.strip_prefix(BUILT_IN).unwrap_or_default()
+}
+
+fn is_model(name: &str) -> bool {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
+    ["glb", "gltf", "obj", "rlv"].contains(&ending.as_str())
+}
+
+/// Whether a zone's texture is one of the built-in ones, whose names have no dot.
+fn is_built_in_texture(field: &str, name: &str) -> bool {
+    field == "texture" && !name.contains('.')
+}
+
+/// Adds a file by the hash of its content. Returns its path relative to the scene file.
+fn added(scene: &Path, name: &str, files: &mut Files) -> Result<String, ServeError> {
+    let path = scene.parent().unwrap_or(Path::new("")).join(name);
+    let bytes = read_file(&path)?;
+    let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    let object = format!("objects/{}.{}", sha256(&bytes), ending.as_deref().unwrap_or("bin"));
+    let resource = Resource::named(bytes, &object, Lifetime::Immutable);
+    files.insert(object.clone(), resource);
+    Ok(format!("../{object}"))
+}
+
+/// Calls `change` with each name of a file, and the field that holds it.
+fn each_name(value: &mut Value, change: &mut dyn FnMut(&str, &mut String)) {
+    match value {
+        Value::Object(fields) => {
+            for (field, value) in fields {
+                match value {
+                    Value::String(name) if FIELDS.contains(&field.as_str()) => change(field, name),
+                    Value::Array(names) if FIELDS.contains(&field.as_str()) => {
+                        for name in names {
+                            if let Value::String(name) = name {
+                                change(field, name);
+                            }
+                        }
+                    }
+                    other => each_name(other, change),
+                }
+            }
+        }
+        Value::Array(values) => values.iter_mut().for_each(|value| each_name(value, change)),
+        _ => {}
+    }
+}
+
+fn rename(text: &mut Value, names: &BTreeMap<String, String>) {
+    each_name(text, &mut |_, name| {
+        if let Some(new) = names.get(name.as_str()) {
+            name.clone_from(new);
+        }
+    });
+}

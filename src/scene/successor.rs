@@ -1,0 +1,106 @@
+//! Replaces the model of an object whose instances stay.
+
+use crate::asset::Model;
+use crate::scene::Scene;
+use crate::scene::handles::ObjectId;
+use crate::scene::instances;
+use crate::scene::object::Object;
+use crate::scene::options::CharacterOptions;
+use crate::shared::lod::instance::INSTANCE_CARRIES;
+use crate::{Error, InputError};
+
+impl Scene {
+    /// Replaces the model of a mesh, for example by one with finer levels of detail that has just arrived. Handles,
+    /// placements, tints, masks and the choice of levels stay. Of thresholds for more levels than the model has, the first ones
+    /// count.
+    ///
+    /// The new model is shown from the next recording on; with an upload budget ([`Scene::set_upload_budget`]), once all
+    /// of its data has arrived. Until then the old model is drawn. Call
+    /// [`Renderer::prepare`](crate::render::Renderer::prepare) after this function, as after adding an object.
+    ///
+    /// # Errors
+    /// [`InputError`] for an object that is not a mesh of this scene, and for a model that [`Scene::add_mesh`] refuses;
+    /// [`crate::gpu::GpuError`].
+    ///
+    /// # Examples
+    ///
+    /// A finer package of the same stone has arrived.
+    ///
+    /// ```no_run
+    /// # use relievo::asset::Model;
+    /// # use relievo::render::Renderer;
+    /// # use relievo::scene::{ObjectId, Scene};
+    /// # fn example(scene: &mut Scene, renderer: &mut Renderer, stone: ObjectId, bytes: &[u8]) -> Result<(), relievo::Error> {
+    /// scene.set_model(stone, &Model::from_rlv(bytes)?)?;
+    /// renderer.prepare(scene)?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn set_model(&mut self, object: ObjectId, model: &Model) -> Result<(), Error> {
+        let old = self.object_at(object)?;
+        InputError::check(old.kind.name() == "a mesh", "object", old.kind.name(), || "must be a mesh")?;
+        let capacity = old.capacity();
+        let next = self.mesh(model, capacity)?;
+        self.object_mut(object)?.successor = Some(Box::new(next));
+        Ok(())
+    }
+
+    /// Like [`Scene::set_model`], for a character. `options` are those of the new model; layers and their weights, clips
+    /// and driven bones stay.
+    ///
+    /// # Errors
+    /// As for [`Scene::set_model`] and [`Scene::add_character_with`]; [`InputError`] for a model with other bones, clips
+    /// or layers.
+    pub fn set_character_model(
+        &mut self,
+        object: ObjectId,
+        model: &Model,
+        options: &CharacterOptions<'_>,
+    ) -> Result<(), Error> {
+        let old = self.object_at(object)?;
+        let Some(character) = old.character() else {
+            return Err(InputError::new("object", old.kind.name(), "must be a character").into());
+        };
+        character.check_successor(model, options)?;
+        let capacity = old.capacity();
+        let next = self.character(model, capacity, options)?;
+        self.object_mut(object)?.successor = Some(Box::new(next));
+        Ok(())
+    }
+
+    /// Shows the new models of all objects whose data has arrived.
+    pub(super) fn succeed(&mut self) {
+        let changed = self.objects.iter_mut().filter_map(|object| object.succeed().then_some(()));
+        if changed.count() > 0 {
+            self.attachments.start_afresh();
+            self.layout = None;
+        }
+    }
+}
+
+impl Object {
+    /// The successor, or the object itself if there is none.
+    pub(super) fn newest(&self) -> &Self {
+        self.successor.as_deref().unwrap_or(self)
+    }
+
+    /// Takes over the successor, if all of its data has arrived. Whether it did.
+    fn succeed(&mut self) -> bool {
+        let Some(mut next) = self.successor.take_if(|next| next.pending.is_none()) else { return false };
+        next.kind.follow(&mut *self.kind);
+        let Self { kind, sphere, errors, mesh_fraction, model_box, looks, draws, chunks, .. } = *next;
+        (self.kind, self.sphere, self.errors, self.mesh_fraction) = (kind, sphere, errors, mesh_fraction);
+        (self.model_box, self.looks, self.draws, self.chunks) = (model_box, looks, draws, chunks);
+        self.start_afresh();
+        let alive: Vec<u32> = self.instances.each().map(|[index, _]| index).collect();
+        for index in alive {
+            let sphere = self.kind.sphere_of(index).unwrap_or(self.sphere);
+            // A character that carries an attached mesh keeps its larger sphere.
+            if self.instances.all()[index as usize].flags & INSTANCE_CARRIES == 0 {
+                self.instances.change(index, |instance| instances::bound(instance, &sphere));
+            }
+            self.mark_whole(index);
+        }
+        true
+    }
+}
