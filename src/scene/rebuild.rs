@@ -115,7 +115,7 @@ impl Scene {
             .iter_mut()
             .filter_map(|object| object.successor.as_mut())
             .for_each(|next| next.pending = None);
-        self.succeed();
+        self.succeed()?;
         let layouts = SceneLayouts::new(gpu)?;
         let passes = Passes::new(gpu)?;
         let timer = if self.counted { StageTimer::new(gpu)? } else { None };

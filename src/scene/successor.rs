@@ -6,7 +6,6 @@ use crate::scene::handles::ObjectId;
 use crate::scene::instances;
 use crate::scene::object::Object;
 use crate::scene::options::CharacterOptions;
-use crate::shared::lod::instance::INSTANCE_CARRIES;
 use crate::{Error, InputError};
 
 impl Scene {
@@ -69,12 +68,14 @@ impl Scene {
     }
 
     /// Shows the new models of all objects whose data has arrived.
-    pub(super) fn succeed(&mut self) {
+    pub(super) fn succeed(&mut self) -> Result<(), InputError> {
         let changed = self.objects.iter_mut().filter_map(|object| object.succeed().then_some(()));
-        if changed.count() > 0 {
-            self.attachments.start_afresh();
-            self.layout = None;
+        if changed.count() == 0 {
+            return Ok(());
         }
+        self.attachments.start_afresh();
+        self.layout = None;
+        self.carry_all()
     }
 }
 
@@ -95,10 +96,7 @@ impl Object {
         let alive: Vec<u32> = self.instances.each().map(|[index, _]| index).collect();
         for index in alive {
             let sphere = self.kind.sphere_of(index).unwrap_or(self.sphere);
-            // A character that carries an attached mesh keeps its larger sphere.
-            if self.instances.all()[index as usize].flags & INSTANCE_CARRIES == 0 {
-                self.instances.change(index, |instance| instances::bound(instance, &sphere));
-            }
+            self.instances.change(index, |instance| instances::bound(instance, &sphere));
             self.mark_whole(index);
         }
         true

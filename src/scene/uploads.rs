@@ -84,7 +84,7 @@ impl Scene {
                 sent += next.upload(&self.gpu, most - sent)?;
             }
         }
-        self.succeed();
+        self.succeed()?;
         Ok(sent)
     }
 }

@@ -10,8 +10,9 @@ use crate::scene::view::View;
 /// What views need of an object ([`Scene::wanted`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wanted {
-    /// The largest error, in model units, that keeps the error of all visible instances within
-    /// [`Quality::pixels`](crate::scene::Quality).
+    /// The largest error of a level, in model units, that keeps the error of all visible instances within
+    /// [`Quality::pixels`](crate::scene::Quality). Bones and influences of characters have their parts of it
+    /// ([`ErrorBudget`](crate::scene::ErrorBudget)).
     pub error: f32,
     /// The area that the bounding spheres of the visible instances cover, in squares with sides of `Quality::pixels`.
     /// What is hidden counts too.
@@ -45,7 +46,7 @@ impl Scene {
             let (_, view) = view.select_view(0, true)?;
             for instance in object.instances.all() {
                 let Some(selected) = select(&view, &lod, instance, None) else { continue };
-                error = error.min(selected.allowed);
+                error = error.min(object.mesh_fraction * selected.allowed);
                 let radius = instance.bounding_sphere[3] / selected.allowed.max(f32::MIN_POSITIVE);
                 area += std::f32::consts::PI * radius * radius;
             }

@@ -39,6 +39,7 @@ mod shadow;
 mod sides;
 mod solids;
 mod stage;
+mod successor;
 mod surfaces;
 mod targets;
 mod terrain;

@@ -121,12 +121,9 @@ impl Scene {
             return Err(InputError::new("mesh", "no mesh", "must be an instance of a mesh"));
         }
         let offset = offset.checked("offset")?;
-        let largest = offset.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
-        InputError::check(largest != 0.0, "offset.scale", 0, || "must not be 0 along all axes")?;
-        let BoundingSphere { center, radius } = object.sphere;
-        let placed = affine_of(&affine(&offset));
-        let center = placed.transform_point3(center.as_dvec3()).as_vec3();
-        let sphere = BoundingSphere { center, radius: largest * radius };
+        let is_flat = offset.scale.iter().all(|scale| *scale == 0.0);
+        InputError::check(!is_flat, "offset.scale", 0, || "must not be 0 along all axes")?;
+        let sphere = in_bone_space(&object.sphere, &offset);
         let own = self.placement(mesh)?;
         self.release(mesh);
         self.attachments.made = self.attachments.made.wrapping_add(1);
@@ -233,6 +230,20 @@ impl Scene {
         Ok(())
     }
 
+    /// Gives all attached meshes, and the characters that carry them, the bounding spheres of their models. Call this function
+    /// after models were replaced.
+    pub(super) fn carry_all(&mut self) -> Result<(), InputError> {
+        self.attachments.paths.clear();
+        for (mesh, attached) in &mut self.attachments.all {
+            let ObjectId { index, generation, .. } = mesh.object;
+            if let Some(object) = self.objects.get([index, generation]) {
+                attached.sphere = in_bone_space(&object.sphere, &attached.offset);
+            }
+        }
+        let characters: Vec<InstanceId> = self.attachments.carried.keys().copied().collect();
+        characters.into_iter().try_for_each(|character| self.carry(character))
+    }
+
     /// The transform of an attached mesh from mesh space to world axes, relative to the corner of `cell`, in the pose at the
     /// scene's time. `None` if the mesh is not attached.
     pub(super) fn attached_placed(
@@ -247,6 +258,13 @@ impl Scene {
         let bone = affine_of(&pose.model_matrices[*bone]) * affine_of(&affine(offset));
         Ok(Some(self.placed(*character, cell)? * bone))
     }
+}
+
+/// A sphere of mesh space in the space of the bone that the mesh is attached to.
+fn in_bone_space(sphere: &BoundingSphere, offset: &Transform) -> BoundingSphere {
+    let largest = offset.scale.iter().fold(0.0_f32, |largest, scale| largest.max(scale.abs()));
+    let center = affine_of(&affine(offset)).transform_point3(sphere.center.as_dvec3()).as_vec3();
+    BoundingSphere { center, radius: largest * sphere.radius }
 }
 
 /// Gives an attached mesh the placement and the sphere of its character, so that views select both alike. The mesh's scale

@@ -7,4 +7,5 @@ mod load;
 mod resume;
 mod routes;
 mod shared;
+mod streamed;
 mod terrain;
