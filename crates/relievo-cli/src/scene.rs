@@ -13,6 +13,7 @@ use relievo::render::Layer;
 use relievo::scene::{Depth, Quality, Transition};
 use relievo::scene_file::LoadedScene;
 use relievo::{Error, InputError};
+use relievo_delivery::client::get_scene;
 use relievo_lab::files::Staged;
 use relievo_lab::measure::{CharacterDump, FrameReport, FrameSummary, ObjectReport, Rendering, ScenePlay};
 use serde::Serialize;
@@ -46,9 +47,12 @@ const DEPTHS: [(&str, Depth); 2] = [("forward", Depth::Forward), ("reversed", De
 /// A mistake in the file is refused with its path (characters[1].scatter.count), and nothing is written.
 #[derive(Args)]
 pub struct Scene {
-    /// The scene, as JSON. The files that it names are relative to it.
-    #[arg(value_name = "FILE")]
+    /// The scene, as JSON: a file, or the address of one on a server (`relievo serve`). The files that it names are relative to it.
+    #[arg(value_name = "FILE|URL")]
     file: PathBuf,
+    /// The server's token.
+    #[arg(long, value_name = "TOKEN", env = "RELIEVO_TOKEN", hide_env_values = true)]
+    token: Option<String>,
     /// Number of frames.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = RangedU64ValueParser::<u32>::new().range(1..=100_000))]
     frames: u32,
@@ -132,6 +136,15 @@ struct Frame {
 }
 
 impl Scene {
+    /// The scene of a file, or of an address.
+    fn read(&self) -> Result<LoadedScene, Error> {
+        let built_ins = &relievo_samples::Samples;
+        match self.file.to_str().filter(|text| text.starts_with("http://") || text.starts_with("https://")) {
+            Some(url) => get_scene(url, self.token.as_deref(), built_ins),
+            None => LoadedScene::from_path(&self.file, built_ins),
+        }
+    }
+
     pub fn run(&self, context: &Context) -> Result<(), Error> {
         let (loaded, rendering) = self.loaded()?;
         let gpu = context.gpu()?;
@@ -198,7 +211,7 @@ impl Scene {
             transition: self.transition,
         };
         given.validate()?;
-        let loaded = during("loading", || LoadedScene::from_path(&self.file, &relievo_samples::Samples))?;
+        let loaded = during("loading", || self.read())?;
         let quality = self.quality(loaded.file().quality());
         Ok((loaded, Rendering { quality, ..given }))
     }

@@ -198,7 +198,7 @@ fn commands_in_help_texts_exist() {
 /// Options that stand alone, as in "`--scene` times …", are those of one of these commands or of all.
 #[test]
 fn options_that_are_named_exist() {
-    let commands = ["crowd", "sweep", "scene", "terrain", "simplify"];
+    let commands = ["crowd", "sweep", "scene", "terrain", "simplify", "serve", "fetch"];
     let help: String = commands.map(|name| relievo(&[name, "--help"]).stdout).concat();
     let options: Vec<_> = DOCUMENTS.iter().flat_map(Document::quoted).collect();
     for option in options.iter().filter(|text| text.starts_with("--")) {
@@ -383,8 +383,11 @@ fn names_in_the_prose_exist() {
         let (owner, last) = name.rsplit_once("::").unwrap_or(("", name));
         let is_module = owner.starts_with(|c: char| c.is_ascii_lowercase());
         let of_crate = |name: &&str| code.contains(&format!("{name}::{owner}"));
-        let is_named =
-            if is_module { ["relievo", "relievo_lab"].iter().any(of_crate) } else { code.contains(owner) };
+        let is_named = if is_module {
+            ["relievo", "relievo_lab", "relievo_delivery"].iter().any(of_crate)
+        } else {
+            code.contains(owner)
+        };
         assert!(is_named && code.contains(last), "`{code}` is not {name}");
         compiled.insert(name.to_owned());
     }

@@ -19,6 +19,7 @@ mod scene;
 mod scene_file;
 mod scene_levels;
 mod scene_mistakes;
+mod serve;
 mod simplify;
 mod skin;
 mod sweep;

@@ -52,6 +52,9 @@ fn items() {
     use relievo::render::SunShadow as _; // SunShadow
     use relievo_lab::measure::FrameSummary as _; // FrameSummary
     use relievo_lab::measure::ScenePlay as _; // ScenePlay
+    use relievo_delivery::client::Fetcher as _; // client::Fetcher
+    use relievo_delivery::client::HttpTransport as _; // HttpTransport
+    use relievo_delivery::client::StreamedScene as _; // client::StreamedScene
 }
 
 #[rustfmt::skip]
@@ -171,6 +174,10 @@ fn generic(scene: &mut Scene, kind: impl Kind) {
     let _ = |below| Criterion::Size { of: SizeOf::Box, below }; // Criterion::Size
     let _ = Culling::Never; // Culling::Never
     let _ = DitherPattern::PerFrame; // DitherPattern::PerFrame
+    let _ = Scene::set_character_model; // Scene::set_character_model
+    let _ = Scene::set_model; // Scene::set_model
+    let _ = Scene::wanted; // Scene::wanted
+    let _ = |options: relievo_delivery::client::FetcherOptions| options.cache; // FetcherOptions::cache
     let _ = Layer::Levels; // Layer::Levels
     let _ = LevelChoice::Forced(0); // LevelChoice::Forced
     let _ = |of: LevelOfDetail| of.bias; // LevelOfDetail::bias

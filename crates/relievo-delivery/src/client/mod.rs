@@ -21,6 +21,8 @@ pub use fetcher::{FetchState, Fetched, Fetcher, FetcherOptions, ModelKey, Traffi
 pub use native::HttpTransport;
 #[cfg(feature = "scene")]
 pub use scene::StreamedScene;
+#[cfg(all(feature = "scene", not(target_arch = "wasm32")))]
+pub use scene::get_scene;
 pub use stream::{Damaged, PackageStream};
 pub use transport::{Answer, Head, Request, RequestId, Transport};
 

@@ -183,3 +183,16 @@ impl<T: Transport> StreamedScene<T> {
         Ok(())
     }
 }
+
+/// Fetches a scene file and all files that it names, while the caller waits. Packages come whole.
+///
+/// # Errors
+/// As for [`StreamedScene::begin`].
+#[cfg(not(target_arch = "wasm32"))]
+pub fn get_scene(url: &str, token: Option<&str>, built_ins: &dyn BuiltIns) -> Result<LoadedScene, Error> {
+    let in_file = |source: InputError| Error::InputFile { path: url.into(), source };
+    let text = String::from_utf8(super::get(url, token)?)
+        .map_err(|error| in_file(InputError::new("scene", "bytes", format!("must be text: {error}"))))?;
+    let read = |path: &Path| super::get(&url_beside(url, path), token).map_err(io::Error::other);
+    SceneFile::from_json(&text).and_then(|file| file.load(&read, built_ins)).map_err(in_file)
+}

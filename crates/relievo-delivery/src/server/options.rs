@@ -48,7 +48,7 @@ pub struct Limits {
     pub answer_seconds: f64,
     /// Bytes of a request's head.
     pub header_bytes: usize,
-    /// Bytes of meshes as JSON that are kept in memory.
+    /// Bytes of packages, and of meshes as JSON, that are kept in memory.
     pub memory: u64,
 }
 

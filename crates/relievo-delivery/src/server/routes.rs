@@ -78,10 +78,14 @@ async fn found(
         path => site.0.file(path),
     };
     if let Some(resource) = own {
+        let resource = site.0.in_memory(&resource).await?;
         return respond(&resource, (method, headers), site.0.cache.store()).await;
     }
     match made(site, &path).await? {
-        Ok(resource) => respond(&resource, (method, headers), site.0.cache.store()).await,
+        Ok(resource) => {
+            let resource = site.0.in_memory(&resource).await?;
+            respond(&resource, (method, headers), site.0.cache.store()).await
+        }
         Err(refused) => Ok(refused),
     }
 }

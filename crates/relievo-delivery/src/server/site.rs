@@ -46,6 +46,8 @@ pub(super) struct Inner {
     pub features: PatchFeatures,
     /// Meshes as JSON, the ones last asked for.
     meshes: MeshCache<MeshKey, Arc<Resource>>,
+    /// Packages, the ones last asked for, by their hashes.
+    objects: MeshCache<String, Bytes>,
     pub metrics: Metrics,
 }
 
@@ -126,8 +128,14 @@ impl Site {
                 }
             }
         }
+        // Half of the memory each.
+        let half = options.limits.memory / 2;
+        let objects = MeshCache::builder()
+            .max_capacity(half)
+            .weigher(|_, bytes: &Bytes| bytes.len().try_into().unwrap_or(u32::MAX))
+            .build();
         let meshes = MeshCache::builder()
-            .max_capacity(options.limits.memory)
+            .max_capacity(half)
             .weigher(|_, mesh: &Arc<Resource>| mesh.memory().try_into().unwrap_or(u32::MAX))
             .build();
         let cache = Cache::new(cache, options.cache_quota)?;
@@ -141,6 +149,7 @@ impl Site {
             packages: RwLock::new(packages),
             features,
             meshes,
+            objects,
             metrics: Metrics::new(),
         }));
         site.0.list();
@@ -313,6 +322,17 @@ impl Inner {
         }
     }
 
+    /// A file that is answered with: a package comes from memory if it is not too large for it.
+    pub async fn in_memory(&self, resource: &Resource) -> Result<Resource, ServeError> {
+        let is_stored = matches!(resource.content, Content::Stored(_));
+        if !is_stored || resource.length > self.options.limits.memory / 16 {
+            return Ok(resource.clone());
+        }
+        let read = self.cache.package(&resource.hash);
+        let bytes = self.objects.try_get_with(resource.hash.clone(), read).await.map_err(shared)?;
+        Ok(Resource { content: Content::Memory(bytes), ..resource.clone() })
+    }
+
     /// A mesh as JSON, or the difference between two levels. It is made once, and kept while it is asked for.
     pub async fn mesh(&self, key: MeshKey) -> Result<Arc<Resource>, ServeError> {
         if let Some(found) = self.meshes.get(&key).await {
@@ -326,11 +346,15 @@ impl Inner {
             let made = tokio::task::spawn_blocking(move || mesh_of(&bytes, &made_of));
             Ok(Arc::new(made.await.map_err(|error| ServeError::io("mesh", std::io::Error::other(error)))??))
         };
-        let made: Result<_, Arc<ServeError>> = self.meshes.try_get_with(key.clone(), make).await;
-        made.map_err(|error: Arc<ServeError>| match Arc::try_unwrap(error) {
-            Ok(error) => error,
-            Err(shared) => ServeError::io("mesh", std::io::Error::other(shared.to_string())),
-        })
+        self.meshes.try_get_with(key.clone(), make).await.map_err(shared)
+    }
+}
+
+/// An error that several requests share.
+fn shared(error: Arc<ServeError>) -> ServeError {
+    match Arc::try_unwrap(error) {
+        Ok(error) => error,
+        Err(shared) => ServeError::io("cache", std::io::Error::other(shared.to_string())),
     }
 }
 

@@ -12,7 +12,7 @@ use relievo_delivery::client::{
 use relievo_delivery::sha256;
 
 use super::host::{creature, rock};
-use super::resume::Random;
+use super::random::Random;
 
 /// Files in memory. Each poll brings some bytes of each request.
 #[derive(Default)]

@@ -3,7 +3,7 @@
 mod fetcher;
 mod host;
 mod json;
-mod load;
+mod random;
 mod resume;
 mod routes;
 mod shared;

@@ -1,4 +1,10 @@
-//! Many clients at once, and requests that are none.
+//! Many clients at once, and requests that are none. A program of its own, since it measures memory.
+
+#[path = "../delivery/host.rs"]
+#[allow(dead_code, reason = "other tests use the rest")]
+mod host;
+#[path = "../delivery/random.rs"]
+mod random;
 
 use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
@@ -9,8 +15,8 @@ use relievo::asset::package::PackageHeader;
 use relievo_delivery::server::ServeOptions;
 use relievo_delivery::sha256;
 
-use super::host::{Host, creature, models, options, rock};
-use super::resume::Random;
+use host::{Host, creature, models, options, rock};
+use random::Random;
 
 /// Memory of this process in bytes.
 fn memory() -> u64 {
