@@ -30,6 +30,7 @@ pub fn helmet() -> Result<Model, InputError> {
         skeleton: Skeleton::of_joints(vec![bone])?,
         skins: vec![Skin { name: "helmet".to_owned(), bones: vec![0], inverse_binds }],
         clips: Vec::new(),
+        motion: None,
         meshes: PARTS
             .iter()
             .map(|(name, middle, axes)| part(name, *middle, *axes))

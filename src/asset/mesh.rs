@@ -66,6 +66,9 @@ pub struct Mesh {
     pub weights: Vec<f32>,
     /// Animated morph weights: the index of each clip that has weight keys, and these keys.
     pub weight_keys: Vec<(usize, WeightKeys)>,
+    /// Geometric error of level 0 in the model's units, at least 0: the largest distance between the mesh and its source in any
+    /// examined pose. It is above 0 in a package, whose vertices are quantized. The errors of `levels` contain it.
+    pub error: f32,
     /// Coarser levels of detail, starting with level 1; there are fewer than [`MAX_LEVELS`]. Level 0 is the mesh itself. Errors
     /// do not decrease from one level to the next. In a mesh with partners, each level has a triangle, and uses a subset of the
     /// previous level's vertices.

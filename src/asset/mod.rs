@@ -3,7 +3,7 @@
 mod beside;
 pub mod clip;
 pub mod gltf;
-pub(crate) mod images;
+pub mod images;
 pub(crate) mod import;
 #[doc(hidden)]
 pub mod indices;
@@ -14,6 +14,7 @@ pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod morph;
+pub(crate) mod motion_bounds;
 pub mod obj;
 pub mod package;
 pub mod skeleton;
@@ -21,6 +22,7 @@ pub(crate) mod tangents;
 pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
+pub use images::Image;
 pub use import::ModelFile;
 pub use influences::{Influence, Influences};
 pub use keyframe::KeyframeCursor;
@@ -29,5 +31,6 @@ pub use material::Material;
 pub use mesh::{Mesh, MeshLevel, bone_radii};
 pub use model::Model;
 pub use morph::{MorphTarget, WeightKeys};
+pub use motion_bounds::MotionBounds;
 pub use skeleton::{Bone, Skeleton, Skin};
 pub use transform::{Affine, Transform};

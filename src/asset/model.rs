@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
 use crate::asset::material::Alpha;
-use crate::asset::{Material, Mesh};
+use crate::asset::{Image, Material, Mesh, MotionBounds};
 use crate::{InputError, error};
 
 /// A skeleton with its skins, clips and meshes.
@@ -26,6 +26,8 @@ pub struct Model {
     pub skins: Vec<Skin>,
     /// Animations that move the bones.
     pub clips: Vec<Clip>,
+    /// Bounds of the model's motion in its clips, if they were computed in advance.
+    pub motion: Option<MotionBounds>,
     /// The meshes of the model.
     pub meshes: Vec<Mesh>,
     /// Number of meshes with a skin from the file; these come first in `meshes`. Each of the other meshes follows one bone as a
@@ -35,7 +37,7 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Images of textures, the top row first. Base colours are sRGB with linear alpha; normal maps are linear.
     #[serde(with = "stored::images")]
-    pub images: Vec<image::RgbaImage>,
+    pub images: Vec<Image>,
 }
 
 impl Model {
@@ -60,7 +62,7 @@ impl Model {
             let Some(texture) = texture else { continue };
             let path = format!("materials[{index}].{field}.image");
             InputError::check_below(&path, texture.image, self.images.len())?;
-            if self.images[texture.image].is_empty() {
+            if self.images[texture.image].size().contains(&0) {
                 return Err(InputError::new(path, texture.image, "must have texels"));
             }
         }

@@ -233,7 +233,7 @@ fn normal_maps_are_read_with_their_scale() {
         (found.materials[0].normal, found.materials[0].normal_scale),
         (Some(Texture { image: 0, sampling }), -2.0)
     );
-    assert_eq!((found.meshes[0].uv[0], &found.images[..]), ([1.0, 1.0], &[normals][..]));
+    assert_eq!((found.meshes[0].uv[0], &found.images[..]), ([1.0, 1.0], &[normals.into()][..]));
     // Materials and images may be left out.
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("bare.gltf");
@@ -307,7 +307,7 @@ fn what_is_no_normal_map_is_refused() {
     };
     let image = |model: &mut Model, image| model.materials[0].normal.as_mut().expect("there").image = image;
     assert_eq!(refused(&|model| image(model, 2)), "materials[0].normal.image");
-    assert_eq!(refused(&|model| model.images[1] = RgbaImage::new(0, 0)), "materials[0].normal.image");
+    assert_eq!(refused(&|model| model.images[1] = RgbaImage::new(0, 0).into()), "materials[0].normal.image");
     assert_eq!(refused(&|model| model.materials[0].normal_scale = f32::NAN), "materials[0].normal_scale");
 }
 

@@ -237,6 +237,33 @@ fn sealed(json: &[u8], rest: &[u8]) -> Vec<u8> {
     [b"RLV\n", &length[..], Sha256::digest(json).as_slice(), json, rest].concat()
 }
 
+/// An image is decoded at its first use. One that cannot be decoded has no texels, and its error names it.
+#[test]
+fn images_are_decoded_when_they_are_asked_for() {
+    let mut file: relievo::asset::ModelFile = relievo_samples::rock().expect("valid").into();
+    file.model.images = vec![image::RgbaImage::from_pixel(64, 16, image::Rgba([9, 8, 7, 255])).into()];
+    let source = relievo_samples::rock().expect("valid");
+    file.model.materials[0].texture = source.materials[0].texture.or(file.model.materials[0].texture);
+    let bytes = cook(&file, &mut |_| ControlFlow::Continue(())).expect("cooked").expect("not broken off");
+    let (header, first) = PackageHeader::read(&bytes).expect("a header");
+    let model = Model::from_rlv(&bytes).expect("read");
+    assert_eq!((model.images[0].size(), model.images[0].dimensions()), ([64, 16], (64, 16)));
+    assert!(model.images == file.model.images && model.images[0] == *file.model.images[0]);
+    // Zeros behind the first bytes of the PNG, which state its size.
+    let mut damaged = bytes.clone();
+    damaged[header.images[0].start + 50..header.images[0].end].fill(0);
+    let image = &damaged[header.images[0].range()];
+    let sum: String = Sha256::digest(image).iter().map(|byte| format!("{byte:02x}")).collect();
+    let mut sealed_header: serde_json::Value = serde_json::from_slice(&damaged[40..first]).expect("JSON");
+    sealed_header["images"][0]["sha256"] = sum.into();
+    let damaged = sealed(&serde_json::to_vec(&sealed_header).expect("JSON"), &damaged[first..]);
+    let model = Model::from_rlv(&damaged).expect("read");
+    assert_eq!(model.images[0].size(), [64, 16]);
+    let error = model.images[0].texels().expect_err("refused");
+    assert!(error.path == "image" && error.bound.contains("must be a whole Png"), "{error}");
+    assert!(model.images[0].is_empty() && model.to_glb().is_err());
+}
+
 #[test]
 fn a_later_version_is_named() {
     let bytes = cooked(&relievo_samples::wall().expect("valid"));

@@ -102,9 +102,8 @@ pub fn model(corners: &[[[f32; 3]; 3]], material: Material, double_sided: bool) 
         targets: Vec::new(),
         weights: Vec::new(),
         weight_keys: Vec::new(),
-        levels: Vec::new(),
-        partners: Vec::new(),
         positions,
+        ..Mesh::default()
     };
     Model {
         skeleton: Skeleton::of_joints(vec![bone]).expect("a bone"),
@@ -114,6 +113,7 @@ pub fn model(corners: &[[[f32; 3]; 3]], material: Material, double_sided: bool) 
             inverse_binds: vec![Mat4::IDENTITY.to_cols_array()],
         }],
         clips: Vec::new(),
+        motion: None,
         meshes: vec![mesh],
         skinned: 1,
         materials: vec![material],

@@ -66,7 +66,7 @@ impl Numbers {
 /// A package of a few hundred bytes with everything that a package can have.
 fn small() -> Vec<u8> {
     let mut model = relievo_samples::wall().expect("valid");
-    model.images = vec![image::RgbaImage::from_pixel(2, 2, image::Rgba([1, 2, 3, 255]))];
+    model.images = vec![image::RgbaImage::from_pixel(2, 2, image::Rgba([1, 2, 3, 255])).into()];
     let mesh = &mut model.meshes[0];
     let delta = MorphDelta { position: [0.5, 0.0, 0.0], ..MorphDelta::default() };
     mesh.targets = vec![MorphTarget { vertices: vec![1, 3], deltas: vec![delta; 2] }];

@@ -9,7 +9,7 @@ use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::material::{AlphaMode, Material as GltfMaterial};
 use gltf_json::texture::{Info, MagFilter, MinFilter, Sampler, Texture as GltfTexture, WrappingMode};
 use gltf_json::validation::Checked;
-use image::{ImageFormat, ImageReader, RgbaImage};
+use image::{ImageError, ImageFormat, ImageReader, RgbaImage};
 
 use super::budget::Budget;
 use super::document::Document;
@@ -164,17 +164,14 @@ const FORMATS: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFor
 /// Decodes a PNG, JPEG or WebP image. The first bytes decide the format, whatever `mimeType` says. Texels are charged to the
 /// budget. `path` names the image in errors.
 pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
-    let refused = |bound: String| InputError::new(path, format!("[{} bytes]", bytes.len()), bound);
-    if bytes.starts_with(KTX2) {
-        return Err(refused(format!("is KTX2, which is not read: {DECOMPRESS}")));
-    }
-    let format = image::guess_format(bytes).ok();
-    let Some(format) = format.filter(|format| FORMATS.contains(format)) else {
-        return Err(refused("must be PNG, JPEG or WebP".to_owned()));
-    };
-    let reader = || ImageReader::with_format(Cursor::new(bytes), format);
-    let unreadable = |error| refused(format!("must be a whole {format:?}: {error}"));
-    let (width, height) = reader().into_dimensions().map_err(unreadable)?;
+    texels(path, bytes, size(budget, path, bytes)?)
+}
+
+/// Width and height of an image that [`decode`] reads. Texels are charged to the budget.
+pub fn size(budget: &Budget, path: &str, bytes: &[u8]) -> Result<[u32; 2], InputError> {
+    let (reader, format) = reader(path, bytes)?;
+    let (width, height) =
+        reader.into_dimensions().map_err(|error| unreadable(path, bytes, format, &error))?;
     if width.max(height) > MAX_TEXELS {
         let bound = format!("must be at most {MAX_TEXELS} texels wide and high");
         return Err(InputError::new(path, format!("{width} × {height}"), bound));
@@ -182,7 +179,39 @@ pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, In
     // WebP has no limit of texels per byte: a few bytes can encode a large image of one colour.
     let packed = if format == ImageFormat::WebP { usize::MAX } else { bytes.len() };
     budget.spend_texels(path, [width, height], packed)?;
-    Ok(reader().decode().map_err(unreadable)?.into_rgba8())
+    Ok([width, height])
+}
+
+/// Decodes an image of this width and height.
+pub fn texels(path: &str, bytes: &[u8], [width, height]: [u32; 2]) -> Result<RgbaImage, InputError> {
+    let (reader, format) = reader(path, bytes)?;
+    let image = reader.decode().map_err(|error| unreadable(path, bytes, format, &error))?.into_rgba8();
+    let bound = || format!("must be {width} × {height}, as its first bytes state");
+    let size = format!("{} × {}", image.width(), image.height());
+    InputError::check(image.dimensions() == (width, height), path, size, bound)?;
+    Ok(image)
+}
+
+fn refused(path: &str, bytes: &[u8], bound: String) -> InputError {
+    InputError::new(path, format!("[{} bytes]", bytes.len()), bound)
+}
+
+fn unreadable(path: &str, bytes: &[u8], format: ImageFormat, error: &ImageError) -> InputError {
+    refused(path, bytes, format!("must be a whole {format:?}: {error}"))
+}
+
+fn reader<'a>(
+    path: &str,
+    bytes: &'a [u8],
+) -> Result<(ImageReader<Cursor<&'a [u8]>>, ImageFormat), InputError> {
+    if bytes.starts_with(KTX2) {
+        return Err(refused(path, bytes, format!("is KTX2, which is not read: {DECOMPRESS}")));
+    }
+    let format = image::guess_format(bytes).ok();
+    let Some(format) = format.filter(|format| FORMATS.contains(format)) else {
+        return Err(refused(path, bytes, "must be PNG, JPEG or WebP".to_owned()));
+    };
+    Ok((ImageReader::with_format(Cursor::new(bytes), format), format))
 }
 
 fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {

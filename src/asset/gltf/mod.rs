@@ -198,6 +198,15 @@ impl Model {
             (std::mem::take(&mut materials.materials), std::mem::take(&mut materials.images));
         let own = nodes.own_skins();
         let skinned = meshes.iter().take_while(|mesh| mesh.skin < own).count();
-        Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes, skinned, materials, images })
+        Ok(Self {
+            skeleton: nodes.skeleton,
+            skins: nodes.skins,
+            clips,
+            motion: None,
+            meshes,
+            skinned,
+            materials,
+            images: images.into_iter().map(crate::asset::Image::from).collect(),
+        })
     }
 }

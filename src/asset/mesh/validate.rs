@@ -48,6 +48,8 @@ impl Mesh {
     }
 
     fn validate_levels(&self) -> Result<(), InputError> {
+        let bound = || "must be finite, and not negative".to_owned();
+        InputError::check((0.0..f32::INFINITY).contains(&self.error), "mesh.error", self.error, bound)?;
         InputError::check_most("mesh.levels.len", self.levels.len(), MAX_LEVELS - 1)?;
         let mut least = 0.0;
         let mut finer = self.used(&self.indices);

@@ -2,7 +2,7 @@
 
 use super::index_of;
 use crate::asset::material::Texture;
-use crate::asset::{Material, Model};
+use crate::asset::{Image, Material, Model};
 
 /// Adds materials and images to a joined model.
 pub(super) struct Looks<'a>(&'a mut Model);
@@ -15,7 +15,7 @@ impl<'a> Looks<'a> {
     /// Adds all materials of a model, and the images that they show. Returns the new index of each material.
     pub fn add(&mut self, model: &Model) -> Vec<usize> {
         let mut known: Vec<Option<usize>> = vec![None; model.images.len()];
-        let mut texture = |texture: Option<Texture>, images: &mut Vec<image::RgbaImage>| {
+        let mut texture = |texture: Option<Texture>, images: &mut Vec<Image>| {
             // No mesh shows a material with a missing image, because the model was checked.
             let texture = texture.filter(|texture| texture.image < model.images.len())?;
             let add = || index_of(images, model.images[texture.image].clone(), PartialEq::eq);

@@ -85,6 +85,7 @@ fn alone(model: &Model, mesh: &Mesh, portrait: &Portrait) -> Result<Model, Input
         skeleton: model.skeleton.clone(),
         skins: model.skins.clone(),
         clips: Vec::new(),
+        motion: None,
         meshes: vec![Mesh { material: Some(0), ..mesh.clone() }],
         skinned: 0,
         materials: vec![material],
