@@ -89,8 +89,7 @@ fn part(name: &str, middle: [f32; 3], axes: [f32; 3]) -> Result<Mesh, InputError
         targets: Vec::new(),
         weights: Vec::new(),
         weight_keys: Vec::new(),
-        levels: Vec::new(),
-        partners: Vec::new(),
+        ..Mesh::default()
     })
 }
 

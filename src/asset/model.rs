@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
-use crate::asset::material::Alpha;
+use crate::asset::material::{Alpha, Pbr};
 use crate::asset::{Image, Material, Mesh, MotionBounds};
 use crate::{InputError, error};
 
@@ -52,14 +52,13 @@ impl Model {
     /// Returns the material of a mesh, if the mesh has one.
     ///
     /// # Errors
-    /// [`InputError`] for a material or an image that the model does not have, for an image without texels, and for a normal
-    /// map's scale that is not finite.
+    /// [`InputError`] for a material or an image that the model does not have, for an image without texels, for a normal map's
+    /// scale that is not finite, and for physically based factors outside 0..=1.
     pub fn material(&self, mesh: &Mesh) -> Result<Option<&Material>, InputError> {
         let Some(index) = mesh.material else { return Ok(None) };
         InputError::check_below("mesh.material", index, self.materials.len())?;
         let material = &self.materials[index];
-        for (field, texture) in [("texture", material.texture), ("normal", material.normal)] {
-            let Some(texture) = texture else { continue };
+        for (field, texture) in material.textures() {
             let path = format!("materials[{index}].{field}.image");
             InputError::check_below(&path, texture.image, self.images.len())?;
             if self.images[texture.image].size().contains(&0) {
@@ -67,6 +66,10 @@ impl Model {
             }
         }
         InputError::check_finite(format!("materials[{index}].normal_scale"), material.normal_scale)?;
+        let Pbr { metallic, roughness, occlusion_strength, emissive: [red, green, blue], .. } = material.pbr;
+        let factors = [metallic, roughness, occlusion_strength, red, green, blue];
+        let path = format!("materials[{index}].pbr");
+        InputError::check_each(&path, &factors, |value| (0.0..=1.0).contains(value), "must be in 0..=1")?;
         Ok(Some(material))
     }
 

@@ -62,6 +62,8 @@ fn baked(mesh: &Mesh, index: usize, vertices: &[Vertex]) -> Result<Mesh, InputEr
         normals: vertices.iter().map(|vertex| vertex.normal).collect(),
         tangents: vertices.iter().map(|vertex| vertex.tangent).collect(),
         uv: mesh.uv.clone(),
+        second_uv: mesh.second_uv.clone(),
+        colors: mesh.colors.clone(),
         indices: mesh.indices.clone(),
         double_sided: mesh.double_sided,
         material: mesh.material,

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
+use relievo::asset::material::{Pbr, PbrTexture, UvSet};
 use relievo::asset::package::{Package, PackageHeader};
 use relievo::asset::{Influences, Interpolation, Mesh, Model, MorphTarget, WeightKeys, morph::MorphDelta};
 use relievo::ops::skinning::{add_levels, cook, join_levels, level_errors, own_levels};
@@ -22,6 +23,8 @@ fn triangles(mesh: &Mesh, level: u32) -> BTreeMap<Vec<u32>, usize> {
         floats(&mesh.normals[at]);
         floats(&mesh.tangents[at]);
         floats(&mesh.uv[at]);
+        floats(mesh.second_uv.get(at).map_or(&[], |uv| &uv[..]));
+        floats(mesh.colors.get(at).map_or(&[], |color| &color[..]));
         for target in &mesh.targets {
             let delta = target.vertices.binary_search(vertex).ok().map(|at| target.deltas[at]);
             let MorphDelta { position, normal, tangent } = delta.unwrap_or_default();
@@ -112,6 +115,10 @@ fn morphed() -> Model {
         mesh.targets.push(MorphTarget { vertices, deltas });
     }
     mesh.weights = vec![0.25, 0.0];
+    mesh.second_uv = mesh.positions.iter().map(|[x, y, _]| [0.5 * x, y + 3.0]).collect();
+    mesh.colors = mesh.positions.iter().map(|[x, y, z]| [x.abs().min(1.0), 0.1 * y, *z, 1.0]).collect();
+    let occlusion = model.materials[0].texture.map(|texture| PbrTexture { texture, uv: UvSet::Second });
+    model.materials[0].pbr = Pbr { metallic: 0.75, occlusion, emissive: [0.1, 0.2, 0.3], ..Pbr::default() };
     let values = vec![0.1, 0.0, 0.7, 1.0];
     let keys = WeightKeys::new(["t", "v"], vec![0.0, 0.5], values, Interpolation::Linear, 2);
     mesh.weight_keys = vec![(1, keys.expect("valid"))];

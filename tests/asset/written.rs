@@ -136,6 +136,7 @@ fn painted() -> Model {
         normal: None,
         normal_scale: 1.0,
         alpha,
+        pbr: Default::default(),
     };
     let normal = Some(Texture { image: 1, sampling: nearest });
     model.materials = vec![

@@ -53,6 +53,7 @@ fn material(name: &str, texture: Option<Texture>) -> Material {
         normal: None,
         normal_scale: 1.0,
         alpha: Alpha::Opaque,
+        pbr: Default::default(),
     }
 }
 

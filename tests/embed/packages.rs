@@ -17,7 +17,8 @@ fn picture(gpu: &Gpu, model: &Model) -> RgbaImage {
     let mut scene = Scene::new(gpu).expect("a scene");
     let crowd = scene.add_character(model, 5).expect("added");
     for at in 0..5 {
-        let place = Placement::at([3.0 * at as f32 - 6.0, 0.0, -8.0 * (at % 2) as f32]).turned(at as f32);
+        let place =
+            Placement::at([3.0 * at as f32 - 6.0, 0.0, -8.0 * (at % 2) as f32]).turned(at as f32).scaled(2.0);
         let walker = scene.spawn(crowd, place).expect("room");
         scene.play(walker, &Play { start: -0.4 * f64::from(at), ..Play::new("walk") }).expect("a clip");
     }
@@ -43,5 +44,5 @@ fn stored_bounds_draw_the_same() {
     model.motion = None;
     assert!(stored == picture(&gpu, &model), "the bounds change the picture");
     let sky = *stored.get_pixel(0, 0);
-    assert!(stored.pixels().filter(|pixel| **pixel != sky).count() > 500, "nobody is drawn");
+    assert!(stored.pixels().filter(|pixel| **pixel != sky).count() > 300, "nobody is drawn");
 }

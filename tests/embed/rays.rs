@@ -133,7 +133,15 @@ fn tangent(corners: &[[f32; 3]; 3]) -> [f32; 4] {
 
 /// A material of one colour.
 pub fn plain(color: [f32; 4], alpha: Alpha) -> Material {
-    Material { name: "plain".to_owned(), color, texture: None, normal: None, normal_scale: 1.0, alpha }
+    Material {
+        name: "plain".to_owned(),
+        color,
+        texture: None,
+        normal: None,
+        normal_scale: 1.0,
+        alpha,
+        pbr: Default::default(),
+    }
 }
 
 /// The twelve triangles of a cube with edges of two units around the origin, two for each side.

@@ -45,6 +45,7 @@ pub fn checkered(mut model: Model) -> Model {
         normal: None,
         normal_scale: 1.0,
         alpha: Alpha::Opaque,
+        pbr: Default::default(),
     });
     let bare = |mesh: &&mut Mesh| mesh.material.is_none();
     model.meshes.iter_mut().filter(bare).for_each(|mesh| mesh.material = Some(index));

@@ -122,6 +122,7 @@ fn materials(samplings: usize) -> Vec<Material> {
             normal: None,
             normal_scale: 1.0,
             alpha,
+            pbr: Default::default(),
         }
     };
     (0..3 * (samplings + 1)).map(material).collect()

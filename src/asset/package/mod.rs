@@ -185,12 +185,9 @@ impl Package {
     pub fn model(&self) -> Result<Model, InputError> {
         let mut materials = self.parts.materials.clone();
         for material in &mut materials {
-            for texture in [&mut material.texture, &mut material.normal] {
-                // A texture that is not there yet is not shown.
-                *texture = texture.filter(|texture| {
-                    !(self.images.len()..self.header.images.len()).contains(&texture.image)
-                });
-            }
+            // A texture that is not there yet is not shown.
+            let is_missing = |image| (self.images.len()..self.header.images.len()).contains(&image);
+            material.map_textures(|texture| Some(texture).filter(|texture| !is_missing(texture.image)));
         }
         let (meshes, quantization) = (self.meshes.iter().zip(&self.parts.meshes), self.header.quantization);
         let mut model = Model {

@@ -43,6 +43,7 @@ pub(super) fn permuted(mesh: &Mesh, order: &[u32]) -> Result<Mesh, InputError> {
         error: mesh.error,
         levels: mesh.levels.iter().map(level).collect(),
         partners: if mesh.levels.is_empty() { Vec::new() } else { placed(&taken(&mesh.partners, order)) },
+        ..Mesh::default()
     })
 }
 

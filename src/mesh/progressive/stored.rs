@@ -195,6 +195,7 @@ impl Stored {
             error: self.error.map_or(0.0, f32::from_bits),
             levels,
             partners: self.partners,
+            ..Mesh::default()
         };
         Ok((mesh, self.sources))
     }

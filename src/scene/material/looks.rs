@@ -67,10 +67,8 @@ impl Looks {
         {
             return Err(InputError::new(format!("{path}.alpha"), cutoff, "must be finite"));
         }
-        for (field, texture) in [("texture", material.texture), ("normal", material.normal)] {
-            if let Some(texture) = texture
-                && texture.image >= self.images.len()
-            {
+        for (field, texture) in material.textures() {
+            if texture.image >= self.images.len() {
                 let bound = format!("must be below {}, the number of images", self.images.len());
                 return Err(InputError::new(format!("{path}.{field}.image"), texture.image, bound));
             }

@@ -77,6 +77,9 @@ pub(super) fn joined(
         error: meshes.iter().map(|mesh| mesh.error).fold(0.0, f32::max),
         levels: levels.map(|level| MeshLevel { indices: all(level), error: errors[level - 1] }).collect(),
         partners: partners(meshes, own, &starts),
+        // Scenes do not draw these.
+        second_uv: Vec::new(),
+        colors: Vec::new(),
     })
 }
 

@@ -78,6 +78,7 @@ fn alone(model: &Model, mesh: &Mesh, portrait: &Portrait) -> Result<Model, Input
         *texture = Texture { image: 0, ..*texture };
     }
     material.normal = None;
+    material.pbr = Default::default();
     if material.alpha == Alpha::Blended {
         material.alpha = Alpha::Dithered;
     }

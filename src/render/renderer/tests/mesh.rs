@@ -36,6 +36,7 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
         normal: None,
         normal_scale: 1.0,
         alpha,
+        pbr: Default::default(),
     });
     model.meshes[0].material = Some(0);
     model.meshes[0].double_sided = double_sided;

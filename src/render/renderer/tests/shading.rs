@@ -41,6 +41,7 @@ fn model() -> Model {
         normal: None,
         normal_scale: 1.0,
         alpha: Alpha::Opaque,
+        pbr: Default::default(),
     };
     let bumpy = Material { texture: texture(0), normal: texture(2), normal_scale: 0.5, ..plain.clone() };
     model.materials = vec![plain, bumpy];
