@@ -50,9 +50,8 @@ pub(crate) use joined_levels::{Examined, join_levels_in};
 pub(crate) use levels::add_levels_and_at_rest;
 pub use levels::{MeshLevels, add_levels, add_levels_with_progress};
 pub use merged::{Merged, merged};
-pub(crate) use motion_bounds::motion_bounds;
 #[cfg(feature = "gpu")]
-pub(crate) use motion_bounds::spheres;
+pub(crate) use motion_bounds::{motion_bounds, spheres};
 pub use pose::poses_of;
 pub use tiers::SkeletonTier;
 pub use vertex::{Blend, Vertex};

@@ -283,10 +283,10 @@ fn unreadable(path: &str, bytes: &[u8], format: ImageFormat, error: &ImageError)
     refused(path, bytes, format!("must be a whole {format:?}: {error}"))
 }
 
-fn reader<'a>(
-    path: &str,
-    bytes: &'a [u8],
-) -> Result<(ImageReader<Cursor<&'a [u8]>>, ImageFormat), InputError> {
+/// A reader of an image, and the image's format.
+type FormatReader<'a> = (ImageReader<Cursor<&'a [u8]>>, ImageFormat);
+
+fn reader<'a>(path: &str, bytes: &'a [u8]) -> Result<FormatReader<'a>, InputError> {
     if bytes.starts_with(KTX2) {
         return Err(refused(path, bytes, format!("is KTX2, which is not read: {DECOMPRESS}")));
     }
