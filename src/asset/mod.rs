@@ -2,8 +2,10 @@
 
 mod beside;
 pub mod clip;
+pub(crate) mod fingerprint;
 pub mod gltf;
-pub mod images;
+pub(crate) mod image_file;
+pub(crate) mod images;
 pub(crate) mod import;
 #[doc(hidden)]
 pub mod indices;
@@ -22,7 +24,7 @@ pub(crate) mod tangents;
 pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
-pub use images::Image;
+pub use image_file::Image;
 pub use import::ModelFile;
 pub use influences::{Influence, Influences};
 pub use keyframe::KeyframeCursor;

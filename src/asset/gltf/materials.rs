@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::io::Cursor;
 
 use gltf_json::Index;
 use gltf_json::extensions::material::PbrSpecularGlossiness;
@@ -10,13 +9,14 @@ use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::material::{AlphaMode, Material as GltfMaterial};
 use gltf_json::texture::{Info, MagFilter, MinFilter, Sampler, Texture as GltfTexture, WrappingMode};
 use gltf_json::validation::Checked;
-use image::{ImageError, ImageFormat, ImageReader, RgbaImage};
+use image::{ImageFormat, RgbaImage};
 
 use super::budget::Budget;
 use super::document::Document;
 use super::extensions::DECOMPRESS;
 use crate::InputError;
 use crate::asset::Image;
+use crate::asset::image_file::{stated_size, texels};
 use crate::asset::material::{
     Alpha, Filter, MAX_TEXELS, Material, Pbr, PbrTexture, Sampling, Texture, UvSet, Wrapping,
 };
@@ -241,9 +241,6 @@ impl<'a> Base<'a> {
 /// First bytes of a KTX2 image.
 const KTX2: &[u8] = b"\xabKTX 20\xbb";
 
-/// Image formats that can be decoded.
-const FORMATS: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
-
 /// Decodes a PNG, JPEG or WebP image. The first bytes decide the format, whatever `mimeType` says. Texels are charged to the
 /// budget. `path` names the image in errors.
 pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
@@ -252,9 +249,11 @@ pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, In
 
 /// Width and height of an image that [`decode`] reads. Texels are charged to the budget.
 pub fn size(budget: &Budget, path: &str, bytes: &[u8]) -> Result<[u32; 2], InputError> {
-    let (reader, format) = reader(path, bytes)?;
-    let (width, height) =
-        reader.into_dimensions().map_err(|error| unreadable(path, bytes, format, &error))?;
+    if bytes.starts_with(KTX2) {
+        let bound = format!("is KTX2, which is not read: {DECOMPRESS}");
+        return Err(InputError::new(path, format!("[{} bytes]", bytes.len()), bound));
+    }
+    let ([width, height], format) = stated_size(path, bytes)?;
     if width.max(height) > MAX_TEXELS {
         let bound = format!("must be at most {MAX_TEXELS} texels wide and high");
         return Err(InputError::new(path, format!("{width} × {height}"), bound));
@@ -263,38 +262,6 @@ pub fn size(budget: &Budget, path: &str, bytes: &[u8]) -> Result<[u32; 2], Input
     let packed = if format == ImageFormat::WebP { usize::MAX } else { bytes.len() };
     budget.spend_texels(path, [width, height], packed)?;
     Ok([width, height])
-}
-
-/// Decodes an image of this width and height.
-pub fn texels(path: &str, bytes: &[u8], [width, height]: [u32; 2]) -> Result<RgbaImage, InputError> {
-    let (reader, format) = reader(path, bytes)?;
-    let image = reader.decode().map_err(|error| unreadable(path, bytes, format, &error))?.into_rgba8();
-    let bound = || format!("must be {width} × {height}, as its first bytes state");
-    let size = format!("{} × {}", image.width(), image.height());
-    InputError::check(image.dimensions() == (width, height), path, size, bound)?;
-    Ok(image)
-}
-
-fn refused(path: &str, bytes: &[u8], bound: String) -> InputError {
-    InputError::new(path, format!("[{} bytes]", bytes.len()), bound)
-}
-
-fn unreadable(path: &str, bytes: &[u8], format: ImageFormat, error: &ImageError) -> InputError {
-    refused(path, bytes, format!("must be a whole {format:?}: {error}"))
-}
-
-/// A reader of an image, and the image's format.
-type FormatReader<'a> = (ImageReader<Cursor<&'a [u8]>>, ImageFormat);
-
-fn reader<'a>(path: &str, bytes: &'a [u8]) -> Result<FormatReader<'a>, InputError> {
-    if bytes.starts_with(KTX2) {
-        return Err(refused(path, bytes, format!("is KTX2, which is not read: {DECOMPRESS}")));
-    }
-    let format = image::guess_format(bytes).ok();
-    let Some(format) = format.filter(|format| FORMATS.contains(format)) else {
-        return Err(refused(path, bytes, "must be PNG, JPEG or WebP".to_owned()));
-    };
-    Ok((ImageReader::with_format(Cursor::new(bytes), format), format))
 }
 
 fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {

@@ -29,7 +29,7 @@ mod write;
 
 use super::gltf::budget::Budget;
 use super::gltf::materials;
-use super::images::Image;
+use super::image_file::Image;
 use super::model::Model;
 use crate::InputError;
 use crate::hash::sha256;
