@@ -30,6 +30,7 @@ pub fn helmet() -> Result<Model, InputError> {
         skeleton: Skeleton::of_joints(vec![bone])?,
         skins: vec![Skin { name: "helmet".to_owned(), bones: vec![0], inverse_binds }],
         clips: Vec::new(),
+        motion: None,
         meshes: PARTS
             .iter()
             .map(|(name, middle, axes)| part(name, *middle, *axes))
@@ -88,8 +89,7 @@ fn part(name: &str, middle: [f32; 3], axes: [f32; 3]) -> Result<Mesh, InputError
         targets: Vec::new(),
         weights: Vec::new(),
         weight_keys: Vec::new(),
-        levels: Vec::new(),
-        partners: Vec::new(),
+        ..Mesh::default()
     })
 }
 

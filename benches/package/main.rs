@@ -5,6 +5,7 @@
 //! ```sh
 //! cargo bench --no-default-features --bench package                  # creature, rock, helmet, and the rock with flat shading
 //! cargo bench … -- helmet model.glb flat:model.glb          # of these alone: names of the three, and files
+//! cargo bench … -- --glb FOLDER NAMES         # also writes each finest level there, for others.mjs
 //! ```
 
 #[path = "../levels/helmet.rs"]
@@ -12,7 +13,7 @@ mod helmet;
 
 use std::error::Error;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use relievo::asset::package::{Package, PackageHeader};
@@ -117,9 +118,22 @@ fn step(model: &Model, mesh: &Mesh) -> f64 {
     extent.log2().floor().exp2() / 32_768.0
 }
 
-fn report(name: &str, file: &ModelFile) -> Result<(), Box<dyn Error>> {
+/// Writes the finest level of a model as binary glTF, without clips and materials.
+fn write_finest(model: &Model, path: &Path) -> Result<(), Box<dyn Error>> {
+    let mut finest = model.clone();
+    (finest.clips, finest.materials, finest.images) = Default::default();
+    for mesh in &mut finest.meshes {
+        (mesh.material, mesh.levels, mesh.partners, mesh.weight_keys) = Default::default();
+    }
+    Ok(std::fs::write(path, finest.to_glb()?)?)
+}
+
+fn report(name: &str, file: &ModelFile, folder: Option<&Path>) -> Result<(), Box<dyn Error>> {
     let bytes = cooked(file)?;
     let model = Model::from_rlv(&bytes)?;
+    if let Some(folder) = folder {
+        write_finest(&model, &folder.join(format!("{}.finest.glb", name.replace(':', "-"))))?;
+    }
     let (header, _) = PackageHeader::read(&bytes)?;
     let (all, first) = level_bytes(&model)?;
     let errors = level_errors(&model.meshes);
@@ -199,6 +213,10 @@ fn flat(mut file: ModelFile) -> Result<ModelFile, Box<dyn Error>> {
 fn main() -> Result<(), Box<dyn Error>> {
     // Cargo passes `--bench` of its own.
     let mut names: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let folder = match names.iter().position(|name| name == "--glb") {
+        Some(at) => names.drain(at..(at + 2).min(names.len())).nth(1).map(PathBuf::from),
+        None => None,
+    };
     if names.is_empty() {
         names.extend(["creature", "rock", "helmet", "flat:rock"].map(str::to_owned));
     }
@@ -212,7 +230,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             Some(name) => flat(open(name)?)?,
             None => open(name)?,
         };
-        report(&Path::new(name).file_stem().unwrap_or_default().to_string_lossy(), &file)?;
+        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+        let shown = if name.starts_with("flat:") && !stem.starts_with("flat:") {
+            format!("flat:{stem}")
+        } else {
+            stem.into()
+        };
+        report(&shown, &file, folder.as_deref())?;
     }
     Ok(())
 }

@@ -10,7 +10,7 @@ pub(crate) fn png(model: &Model, image: usize) -> Result<Vec<u8>, InputError> {
     let mut bytes = Cursor::new(Vec::new());
     let found = model.images.get(image);
     let refused = |bound: String| InputError::new(format!("images[{image}]"), image, bound);
-    let found = found.ok_or_else(|| refused(format!("must be below {}", model.images.len())))?;
+    let found = found.ok_or_else(|| refused(format!("must be below {}", model.images.len())))?.texels()?;
     found.write_to(&mut bytes, image::ImageFormat::Png).map_err(|error| refused(error.to_string()))?;
     Ok(bytes.into_inner())
 }

@@ -26,13 +26,91 @@ pub struct Material {
     pub normal_scale: f32,
     /// How alpha is used: opaque, masked, dithered or blended.
     pub alpha: Alpha,
+    /// Physically based properties, which scenes do not draw.
+    pub pbr: Pbr,
+}
+
+/// Physically based properties of a surface, as in glTF. They are read, stored and written, but scenes do not draw them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Pbr {
+    /// Metalness, 0 to 1; multiplied by the blue channel of `metallic_roughness`.
+    pub metallic: f32,
+    /// Roughness, 0 to 1; multiplied by the green channel of `metallic_roughness`.
+    pub roughness: f32,
+    /// Texture of roughness (green) and metalness (blue); linear.
+    pub metallic_roughness: Option<PbrTexture>,
+    /// Texture of ambient occlusion (red); linear. 1 is no occlusion.
+    pub occlusion: Option<PbrTexture>,
+    /// Strength of the occlusion, 0 to 1.
+    pub occlusion_strength: f32,
+    /// Emitted light: linear red, green and blue, each 0 to 1; multiplied by `emission`.
+    pub emissive: [f32; 3],
+    /// Texture of the emitted light; sRGB.
+    pub emission: Option<PbrTexture>,
+}
+
+/// A texture with the set of texture coordinates at which it is sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PbrTexture {
+    /// The image, with its filtering and wrapping.
+    pub texture: Texture,
+    /// The mesh's texture coordinates.
+    pub uv: UvSet,
+}
+
+/// One of a mesh's two sets of texture coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum UvSet {
+    /// [`Mesh::uv`](crate::asset::Mesh::uv).
+    #[default]
+    First,
+    /// [`Mesh::second_uv`](crate::asset::Mesh::second_uv).
+    Second,
+}
+
+impl Default for Pbr {
+    /// A rough surface that is not metallic and emits nothing.
+    fn default() -> Self {
+        Self {
+            metallic: 0.0,
+            roughness: 1.0,
+            metallic_roughness: None,
+            occlusion: None,
+            occlusion_strength: 1.0,
+            emissive: [0.0; 3],
+            emission: None,
+        }
+    }
 }
 
 impl Material {
     /// Builds an opaque material of one colour, without textures.
     pub fn opaque(name: &str, color: [f32; 4]) -> Self {
         let (name, alpha) = (name.to_owned(), Alpha::Opaque);
-        Self { name, color, texture: None, normal: None, normal_scale: 1.0, alpha }
+        Self { name, color, texture: None, normal: None, normal_scale: 1.0, alpha, pbr: Pbr::default() }
+    }
+
+    /// All textures, each with the path of its field.
+    pub(crate) fn textures(&self) -> impl Iterator<Item = (&'static str, Texture)> {
+        let Pbr { metallic_roughness, occlusion, emission, .. } = &self.pbr;
+        let pbr = |one: &Option<PbrTexture>| one.map(|one| one.texture);
+        let all = [
+            ("texture", self.texture),
+            ("normal", self.normal),
+            ("pbr.metallic_roughness", pbr(metallic_roughness)),
+            ("pbr.occlusion", pbr(occlusion)),
+            ("pbr.emission", pbr(emission)),
+        ];
+        all.into_iter().filter_map(|(field, texture)| Some((field, texture?)))
+    }
+
+    /// Replaces each texture by the result of `map`.
+    pub(crate) fn map_textures(&mut self, mut map: impl FnMut(Texture) -> Option<Texture>) {
+        self.texture = self.texture.and_then(&mut map);
+        self.normal = self.normal.and_then(&mut map);
+        for one in [&mut self.pbr.metallic_roughness, &mut self.pbr.occlusion, &mut self.pbr.emission] {
+            *one = one.and_then(|one| Some(PbrTexture { texture: map(one.texture)?, ..one }));
+        }
     }
 }
 

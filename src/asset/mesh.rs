@@ -50,6 +50,10 @@ pub struct Mesh {
     pub tangents: Vec<[f32; 4]>,
     /// Texture coordinates per vertex, for all textures of the material; v points down the image.
     pub uv: Vec<[f32; 2]>,
+    /// Second set of texture coordinates per vertex, for textures of [`Pbr`](super::material::Pbr); empty if there is none.
+    pub second_uv: Vec<[f32; 2]>,
+    /// Linear colour and alpha per vertex; empty if there is none. Scenes do not draw it.
+    pub colors: Vec<[f32; 4]>,
     /// Three vertex indices per triangle. After skinning in the rest pose, a triangle is counter-clockwise seen from outside. A
     /// triangle that bones mirror in the rest pose is therefore clockwise in bind space. The import reverses such triangles of
     /// the file.
@@ -66,6 +70,9 @@ pub struct Mesh {
     pub weights: Vec<f32>,
     /// Animated morph weights: the index of each clip that has weight keys, and these keys.
     pub weight_keys: Vec<(usize, WeightKeys)>,
+    /// Geometric error of level 0 in the model's units, at least 0: the largest distance between the mesh and its source in any
+    /// examined pose. It is above 0 in a package, whose vertices are quantized. The errors of `levels` contain it.
+    pub error: f32,
     /// Coarser levels of detail, starting with level 1; there are fewer than [`MAX_LEVELS`]. Level 0 is the mesh itself. Errors
     /// do not decrease from one level to the next. In a mesh with partners, each level has a triangle, and uses a subset of the
     /// previous level's vertices.
@@ -124,6 +131,8 @@ impl Mesh {
         floats(self.normals[..count].as_flattened());
         floats(self.tangents[..count].as_flattened());
         floats(self.uv[..count].as_flattened());
+        floats(self.second_uv[..count.min(self.second_uv.len())].as_flattened());
+        floats(self.colors[..count.min(self.colors.len())].as_flattened());
         for vertex in 0..count {
             let influences = self.influences.of(vertex);
             words.push(influences.len() as u32);

@@ -2,7 +2,9 @@
 
 mod beside;
 pub mod clip;
+pub(crate) mod fingerprint;
 pub mod gltf;
+pub(crate) mod image_file;
 pub(crate) mod images;
 pub(crate) mod import;
 #[doc(hidden)]
@@ -14,6 +16,7 @@ pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod morph;
+pub(crate) mod motion_bounds;
 pub mod obj;
 pub mod package;
 pub mod skeleton;
@@ -21,6 +24,7 @@ pub(crate) mod tangents;
 pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
+pub use image_file::Image;
 pub use import::ModelFile;
 pub use influences::{Influence, Influences};
 pub use keyframe::KeyframeCursor;
@@ -29,5 +33,6 @@ pub use material::Material;
 pub use mesh::{Mesh, MeshLevel, bone_radii};
 pub use model::Model;
 pub use morph::{MorphTarget, WeightKeys};
+pub use motion_bounds::MotionBounds;
 pub use skeleton::{Bone, Skeleton, Skin};
 pub use transform::{Affine, Transform};

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::clip::Clip;
 use super::skeleton::{Skeleton, Skin};
-use crate::asset::material::Alpha;
-use crate::asset::{Material, Mesh};
+use crate::asset::material::{Alpha, Pbr};
+use crate::asset::{Image, Material, Mesh, MotionBounds};
 use crate::{InputError, error};
 
 /// A skeleton with its skins, clips and meshes.
@@ -26,6 +26,8 @@ pub struct Model {
     pub skins: Vec<Skin>,
     /// Animations that move the bones.
     pub clips: Vec<Clip>,
+    /// Bounds of the model's motion in its clips, if they were computed in advance.
+    pub motion: Option<MotionBounds>,
     /// The meshes of the model.
     pub meshes: Vec<Mesh>,
     /// Number of meshes with a skin from the file; these come first in `meshes`. Each of the other meshes follows one bone as a
@@ -35,7 +37,7 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Images of textures, the top row first. Base colours are sRGB with linear alpha; normal maps are linear.
     #[serde(with = "stored::images")]
-    pub images: Vec<image::RgbaImage>,
+    pub images: Vec<Image>,
 }
 
 impl Model {
@@ -50,21 +52,24 @@ impl Model {
     /// Returns the material of a mesh, if the mesh has one.
     ///
     /// # Errors
-    /// [`InputError`] for a material or an image that the model does not have, for an image without texels, and for a normal
-    /// map's scale that is not finite.
+    /// [`InputError`] for a material or an image that the model does not have, for an image without texels, for a normal map's
+    /// scale that is not finite, and for physically based factors outside 0..=1.
     pub fn material(&self, mesh: &Mesh) -> Result<Option<&Material>, InputError> {
         let Some(index) = mesh.material else { return Ok(None) };
         InputError::check_below("mesh.material", index, self.materials.len())?;
         let material = &self.materials[index];
-        for (field, texture) in [("texture", material.texture), ("normal", material.normal)] {
-            let Some(texture) = texture else { continue };
+        for (field, texture) in material.textures() {
             let path = format!("materials[{index}].{field}.image");
             InputError::check_below(&path, texture.image, self.images.len())?;
-            if self.images[texture.image].is_empty() {
+            if self.images[texture.image].size().contains(&0) {
                 return Err(InputError::new(path, texture.image, "must have texels"));
             }
         }
         InputError::check_finite(format!("materials[{index}].normal_scale"), material.normal_scale)?;
+        let Pbr { metallic, roughness, occlusion_strength, emissive: [red, green, blue], .. } = material.pbr;
+        let factors = [metallic, roughness, occlusion_strength, red, green, blue];
+        let path = format!("materials[{index}].pbr");
+        InputError::check_each(&path, &factors, |value| (0.0..=1.0).contains(value), "must be in 0..=1")?;
         Ok(Some(material))
     }
 

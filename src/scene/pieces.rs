@@ -38,6 +38,7 @@ pub(super) fn pieces(merged: &Merged, index: usize, most: Most) -> Merged {
             skeleton: merged.model.skeleton.clone(),
             skins: merged.model.skins.clone(),
             clips: Vec::new(),
+            motion: None,
             meshes: Vec::new(),
             skinned: 0,
             materials: Vec::new(),

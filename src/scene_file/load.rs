@@ -338,7 +338,7 @@ impl<'a> Files<'a> {
         let (heights, own) = self.heights(&at("relief"), relief)?;
         let albedo = match &relief.albedo {
             Some(source) => self.colors(&at("albedo"), source)?,
-            None => own.unwrap_or_else(|| base_color(rest)),
+            None => own.map_or_else(|| base_color(rest), Ok)?,
         };
         let normals = relief.normals.as_ref().map(|source| self.colors(&at("normal"), source)).transpose()?;
         let made = Relief::new(mesh, heights, albedo);
@@ -477,14 +477,15 @@ fn surface_vertex(mesh: &Mesh, at: usize, tiles: f32) -> SurfaceVertex {
 }
 
 /// The image of a model's first material, or one texel of its colour; white without materials.
-fn base_color(model: &Model) -> RgbaImage {
+fn base_color(model: &Model) -> Result<RgbaImage, InputError> {
     let material = model.meshes.iter().find_map(|mesh| model.material(mesh).ok().flatten());
     let color = material.map_or([1.0; 4], |material| material.color);
     let image = material.and_then(|material| model.images.get(material.texture?.image));
-    image.cloned().unwrap_or_else(|| {
+    let Some(image) = image else {
         let [red, green, blue] = [0, 1, 2].map(|channel: usize| srgb::byte(color[channel]));
-        RgbaImage::from_pixel(1, 1, Rgba([red, green, blue, u8::MAX]))
-    })
+        return Ok(RgbaImage::from_pixel(1, 1, Rgba([red, green, blue, u8::MAX])));
+    };
+    image.texels().cloned()
 }
 
 #[cfg(test)]
@@ -532,7 +533,7 @@ mod tests {
         let loaded = file.load(&files, &Samples).expect("loaded");
         let models = loaded.objects.iter().map(|object| match object {
             Loaded::Model(model) => model.clone(),
-            Loaded::Relief(_) => unreachable!("there is none"),
+            Loaded::Relief(_) | Loaded::Waiting => unreachable!("there is none"),
         });
         let models: Vec<Arc<Model>> = models.collect();
         let errors =
@@ -696,7 +697,7 @@ mod tests {
             .iter()
             .map(|object| match object {
                 Loaded::Model(model) => model,
-                Loaded::Relief(_) => unreachable!("there is none"),
+                Loaded::Relief(_) | Loaded::Waiting => unreachable!("there is none"),
             })
             .collect();
         let moving: Vec<_> = models.iter().filter(|model| !model.clips.is_empty()).collect();

@@ -44,6 +44,7 @@ pub fn still(model: &Model, vertices: &[Vec<Vertex>]) -> Result<Model, InputErro
         skeleton: Skeleton::of_joints(vec![bone])?,
         skins: vec![Skin { name: "model".to_owned(), bones: vec![0], inverse_binds: vec![identity] }],
         clips: Vec::new(),
+        motion: None,
         meshes: meshes.map(|(at, (mesh, own))| baked(mesh, at, own)).collect::<Result<_, _>>()?,
         skinned: 0,
         materials: model.materials.clone(),
@@ -61,10 +62,13 @@ fn baked(mesh: &Mesh, index: usize, vertices: &[Vertex]) -> Result<Mesh, InputEr
         normals: vertices.iter().map(|vertex| vertex.normal).collect(),
         tangents: vertices.iter().map(|vertex| vertex.tangent).collect(),
         uv: mesh.uv.clone(),
+        second_uv: mesh.second_uv.clone(),
+        colors: mesh.colors.clone(),
         indices: mesh.indices.clone(),
         double_sided: mesh.double_sided,
         material: mesh.material,
         influences: Influences::rigid(vertices.len()),
+        error: mesh.error,
         ..Mesh::default()
     })
 }

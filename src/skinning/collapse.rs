@@ -119,6 +119,7 @@ pub fn collapse_bones(model: &Model, options: &CollapseOptions) -> Result<Collap
         skeleton,
         skins,
         clips,
+        motion: None,
         meshes,
         skinned: model.skinned,
         materials: model.materials.clone(),

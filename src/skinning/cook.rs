@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use super::level_errors;
 use super::levels::add_levels_of_all_clips;
+use super::motion_bounds::motion_bounds;
 use super::pose::{Moment, Pose, moments_in};
 use super::poses_of;
 use crate::InputError;
@@ -47,9 +48,10 @@ pub fn cook(
 ) -> Result<Option<Vec<u8>>, InputError> {
     let ModelFile { model, images, quantization } = file;
     model.check().map_err(|error| error.below("model"))?;
-    let is_done = *quantization > 0.0 || model.meshes.iter().any(|mesh| !mesh.levels.is_empty());
-    let (model, quantization) = match is_done {
-        true => (model.clone(), *quantization),
+    let quantization = model.meshes.iter().map(|mesh| mesh.error).fold(*quantization, f32::max);
+    let is_done = quantization > 0.0 || model.meshes.iter().any(|mesh| !mesh.levels.is_empty());
+    let (mut model, quantization) = match is_done {
+        true => (model.clone(), quantization),
         false => {
             let poses = model.clips.iter().map(sparse_poses_of).collect::<Result<Vec<_>, _>>()?;
             let poses = poses.into_iter().max().unwrap_or(1);
@@ -64,6 +66,9 @@ pub fn cook(
             (own, quantization)
         }
     };
+    if !model.clips.is_empty() {
+        model.motion = Some(motion_bounds(&model)?);
+    }
     let errors = level_errors(&model.meshes);
     write(&Packed { model: &model, errors: &errors, quantization, images }).map(Some)
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::bounding_sphere::{BoundingSphere, MARGIN, middle_of};
 use super::instance_lod::FadeRange;
-use super::pose::{Moment, Pose, mean, moments};
+use super::pose::{Moment, Pose, bones_at, mean, moments, weights_at};
 use crate::InputError;
 use crate::animation::Projection;
 use crate::asset::Mesh;
@@ -103,6 +103,41 @@ impl Extent {
         // An error of 0 is allowed at any distance. With 0 pixels, any other error needs an infinite distance.
         projected_distance.max(3.0 * radius).min(f64::from(f32::MAX)) as f32
     }
+}
+
+/// The largest [`Extent::stray`] of a model's meshes in `poses` poses of every clip.
+///
+/// # Errors
+/// As for [`Extent::new`].
+pub(super) fn stray_of(model: &Model, poses: usize) -> Result<f32, InputError> {
+    let clips: Vec<usize> = (0..model.clips.len()).collect();
+    let mut all = Vec::new();
+    for mesh in 0..model.meshes.len() {
+        all = moments(model, mesh, &clips, poses)?;
+    }
+    // A vertex that follows one bone stays where it is.
+    let fading = |mesh: &Mesh| {
+        let vertices = (0..mesh.vertices()).filter(|vertex| mesh.influences.of(*vertex).len() > 1);
+        vertices.collect::<Vec<_>>()
+    };
+    let fading: Vec<_> = model.meshes.iter().map(|mesh| (mesh, fading(mesh))).collect();
+    let fading: Vec<_> = fading.iter().filter(|(_, vertices)| !vertices.is_empty()).collect();
+    if fading.is_empty() {
+        return Ok(0.0);
+    }
+    let at = |moment: &Moment| {
+        let bones = bones_at(model, *moment);
+        let of_mesh = |(mesh, vertices): &&(&Mesh, Vec<usize>)| {
+            let pose = Pose::at(model, mesh, &bones, &weights_at(model, mesh, *moment));
+            let of_vertex = |vertex: &usize| {
+                let influences = mesh.influences.of(*vertex);
+                stray(influences, &pose.points(*vertex, influences))
+            };
+            vertices.iter().map(of_vertex).fold(0.0, f32::max)
+        };
+        fading.iter().map(of_mesh).fold(0.0, f32::max)
+    };
+    Ok(STRAY_MARGIN * all.par_iter().map(at).reduce(|| 0.0, f32::max))
 }
 
 /// Bounds of a mesh at the sampled moments: the corners of its box, and the largest displacement of a vertex per unit

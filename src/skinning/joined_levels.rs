@@ -159,6 +159,7 @@ impl Joined {
             skeleton: near.skeleton.clone(),
             skins: Vec::new(),
             clips: near.clips.clone(),
+            motion: None,
             meshes: Vec::new(),
             skinned: 0,
             materials: Vec::new(),

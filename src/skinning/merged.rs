@@ -100,6 +100,7 @@ fn bare(model: &Model) -> Model {
         skeleton: model.skeleton.clone(),
         skins: Vec::new(),
         clips: model.clips.clone(),
+        motion: None,
         meshes: Vec::new(),
         skinned: 0,
         materials: model.materials.clone(),

@@ -23,6 +23,7 @@ pub mod levels;
 pub mod merged;
 pub mod morph;
 pub mod morph_weights;
+mod motion_bounds;
 #[cfg(feature = "gpu")]
 pub mod paged;
 pub mod pages;
@@ -49,6 +50,8 @@ pub(crate) use joined_levels::{Examined, join_levels_in};
 pub(crate) use levels::add_levels_and_at_rest;
 pub use levels::{MeshLevels, add_levels, add_levels_with_progress};
 pub use merged::{Merged, merged};
+#[cfg(feature = "gpu")]
+pub(crate) use motion_bounds::{motion_bounds, spheres};
 pub use pose::poses_of;
 pub use tiers::SkeletonTier;
 pub use vertex::{Blend, Vertex};

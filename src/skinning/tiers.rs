@@ -5,8 +5,7 @@
 //! ([`Skeleton::with_tier`]), so one crowd holds the bones of all tiers. Only the bones of an instance's tier are sampled.
 
 use super::collapse::{CollapseOptions, KeptBones, collapse_bones, fewest_bones, vertex_error};
-use super::extent::Extent;
-use super::pose::poses_of;
+use super::motion_bounds::stray;
 use crate::InputError;
 use crate::asset::mesh::bone_radii;
 use crate::asset::{Clip, Influence, Influences, Model, Skeleton, Skin};
@@ -61,7 +60,7 @@ pub struct Tiers {
     pub joints: Vec<usize>,
     /// Size of the keyframes of all clips in each tier, in bytes.
     pub keyframes: Vec<usize>,
-    /// Largest displacement of a vertex per unit of influence fade, in any tier ([`Extent::stray`]).
+    /// Largest displacement of a vertex per unit of influence fade, in any tier ([`Extent::stray`](super::Extent::stray)).
     pub stray: f32,
 }
 
@@ -147,12 +146,6 @@ fn keyframes(model: &Model) -> usize {
 
 fn radii(model: &Model) -> Vec<f32> {
     bone_radii(model.skeleton.len(), &model.skins, &model.meshes)
-}
-
-fn stray(model: &Model) -> Result<f32, InputError> {
-    let poses = model.clips.iter().map(poses_of).collect::<Result<Vec<_>, _>>()?;
-    let every: Vec<usize> = (0..model.clips.len()).collect();
-    Ok(Extent::of_model(model, &every, poses.into_iter().max().unwrap_or(1))?.stray)
 }
 
 /// The model with the skeleton of a tier.

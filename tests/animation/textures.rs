@@ -6,7 +6,7 @@ use base64::Engine as _;
 use image::{ImageFormat, Rgba, RgbaImage};
 use relievo::asset::Material;
 use relievo::asset::Model;
-use relievo::asset::material::{Alpha, Filter, Sampling, Texture, Wrapping};
+use relievo::asset::material::{Alpha, Filter, Pbr, PbrTexture, Sampling, Texture, UvSet, Wrapping};
 use serde_json::json;
 
 use crate::meshes::Skinned;
@@ -70,6 +70,7 @@ fn a_material_is_read() {
         normal: None,
         normal_scale: 1.0,
         alpha: Alpha::Mask(0.25),
+        pbr: Pbr { metallic: 1.0, ..Pbr::default() },
     };
     assert_eq!((model.meshes[0].material, &model.materials[..]), (Some(0), &[expected][..]));
     assert_eq!(model.images, [picture()]);
@@ -233,7 +234,7 @@ fn normal_maps_are_read_with_their_scale() {
         (found.materials[0].normal, found.materials[0].normal_scale),
         (Some(Texture { image: 0, sampling }), -2.0)
     );
-    assert_eq!((found.meshes[0].uv[0], &found.images[..]), ([1.0, 1.0], &[normals][..]));
+    assert_eq!((found.meshes[0].uv[0], &found.images[..]), ([1.0, 1.0], &[normals.into()][..]));
     // Materials and images may be left out.
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("bare.gltf");
@@ -307,7 +308,7 @@ fn what_is_no_normal_map_is_refused() {
     };
     let image = |model: &mut Model, image| model.materials[0].normal.as_mut().expect("there").image = image;
     assert_eq!(refused(&|model| image(model, 2)), "materials[0].normal.image");
-    assert_eq!(refused(&|model| model.images[1] = RgbaImage::new(0, 0)), "materials[0].normal.image");
+    assert_eq!(refused(&|model| model.images[1] = RgbaImage::new(0, 0).into()), "materials[0].normal.image");
     assert_eq!(refused(&|model| model.materials[0].normal_scale = f32::NAN), "materials[0].normal_scale");
 }
 
@@ -372,7 +373,9 @@ fn glossy_materials_have_their_diffuse_colour() {
     let rough = skinned.0.json["materials"][0]["pbrMetallicRoughness"].take();
     skinned.0.json["materials"][0].as_object_mut().expect("an object").remove("pbrMetallicRoughness");
     skinned.0.json["materials"][0]["extensions"] = json!({name: {"diffuseFactor": rough["baseColorFactor"], "diffuseTexture": rough["baseColorTexture"]}});
-    assert_eq!(model(&skinned), model(&textured()));
+    let (mut glossy, plain) = (model(&skinned), model(&textured()));
+    let pbr = std::mem::replace(&mut glossy.materials[0].pbr, plain.materials[0].pbr.clone());
+    assert_eq!((glossy, [pbr.metallic, pbr.roughness]), (plain, [0.0; 2]));
     skinned.0.json["extensionsRequired"] = json!([name]);
     skinned.0.json["materials"][0]["extensions"][name]["diffuseTexture"] = moved;
     let (found, plain) = (model(&skinned), model(&textured()));
@@ -416,4 +419,65 @@ fn textures_may_be_webp() {
     let view = skinned.0.view(b"\xabKTX 20\xbb\r\n\x1a\n");
     skinned.0.json["images"][0]["bufferView"] = json!(view);
     skinned.refused("images[0]", "gltf-transform ktxdecompress");
+}
+
+/// What scenes do not draw is read, written as glTF, and kept by packages.
+#[test]
+fn all_of_the_core_of_materials_is_kept() {
+    let mut skinned = textured();
+    add_normals(&mut skinned);
+    let second = skinned.0.floats("VEC2", &[0.5, 0.25, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    skinned.attribute("TEXCOORD_1", second);
+    let colors = skinned.0.floats("VEC3", &[0.5, 0.25, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+    skinned.attribute("COLOR_0", colors);
+    let material = &mut skinned.0.json["materials"][0];
+    material["pbrMetallicRoughness"]["metallicFactor"] = json!(0.5);
+    material["pbrMetallicRoughness"]["roughnessFactor"] = json!(0.25);
+    material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 1});
+    let transform = json!({"KHR_texture_transform": {"scale": [2.0, 4.0]}});
+    material["occlusionTexture"] =
+        json!({"index": 1, "texCoord": 1, "strength": 0.75, "extensions": transform});
+    // These coordinates are a third set.
+    material["emissiveTexture"] = json!({"index": 0, "texCoord": 1});
+    material["emissiveFactor"] = json!([0.1, 0.2, 0.3]);
+    let found = model(&skinned);
+    let texture = |uv| Some(PbrTexture { texture: found.materials[0].normal.expect("there"), uv });
+    let wanted = Pbr {
+        metallic: 0.5,
+        roughness: 0.25,
+        metallic_roughness: texture(UvSet::First),
+        occlusion: texture(UvSet::Second),
+        occlusion_strength: 0.75,
+        emissive: [0.1, 0.2, 0.3],
+        emission: None,
+    };
+    assert_eq!(found.materials[0].pbr, wanted);
+    let mesh = &found.meshes[0];
+    assert_eq!((mesh.second_uv[0], mesh.second_uv[1]), ([1.0, 1.0], [2.0, 0.0]));
+    assert_eq!((mesh.colors[0], mesh.colors[3]), ([0.5, 0.25, 1.0, 1.0], [1.0; 4]));
+    let again = Model::from_gltf(&found.to_glb().expect("written"), None).expect("valid");
+    assert_eq!((&again.materials, &again.images), (&found.materials, &found.images));
+    assert_eq!((&again.meshes[0].second_uv, &again.meshes[0].colors), (&mesh.second_uv, &mesh.colors));
+    let cooked =
+        relievo::ops::skinning::cook(&found.clone().into(), &mut |_| std::ops::ControlFlow::Continue(()));
+    let package = Model::from_rlv(&cooked.expect("cooked").expect("not broken off")).expect("read");
+    assert_eq!((&package.materials, &package.images), (&found.materials, &found.images));
+    for (vertex, position) in package.meshes[0].positions.iter().enumerate() {
+        let near = |other: &[f32; 3]| other.iter().zip(position).all(|(a, b)| (a - b).abs() < 1e-3);
+        let from = mesh.positions.iter().position(near).expect("a vertex of the source");
+        let (uv, color) = (package.meshes[0].second_uv[vertex], package.meshes[0].colors[vertex]);
+        assert!((0..2).all(|at| (uv[at] - mesh.second_uv[from][at]).abs() <= 1.0 / 16_384.0));
+        assert!((0..4).all(|at| (color[at] - mesh.colors[from][at]).abs() <= 1.0 / 1024.0));
+    }
+    // One set is enough if all textures lie there, and a second set is kept although no texture is read there.
+    let material = &mut skinned.0.json["materials"][0];
+    material["emissiveTexture"] = json!({"index": 0});
+    material["occlusionTexture"] = json!({"index": 1});
+    let found = model(&skinned);
+    assert_eq!(
+        (found.meshes[0].second_uv[0], found.materials[0].pbr.emission.map(|one| one.uv)),
+        ([0.5, 0.25], Some(UvSet::First))
+    );
+    skinned.0.json["materials"][0]["emissiveFactor"] = json!([0.1, 2.0, 0.3]);
+    skinned.refused("materials[0].emissiveFactor[1]", "must be in 0..=1");
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
+use relievo::asset::material::{Pbr, PbrTexture, UvSet};
 use relievo::asset::package::{Package, PackageHeader};
 use relievo::asset::{Influences, Interpolation, Mesh, Model, MorphTarget, WeightKeys, morph::MorphDelta};
 use relievo::ops::skinning::{add_levels, cook, join_levels, level_errors, own_levels};
@@ -22,6 +23,8 @@ fn triangles(mesh: &Mesh, level: u32) -> BTreeMap<Vec<u32>, usize> {
         floats(&mesh.normals[at]);
         floats(&mesh.tangents[at]);
         floats(&mesh.uv[at]);
+        floats(mesh.second_uv.get(at).map_or(&[], |uv| &uv[..]));
+        floats(mesh.colors.get(at).map_or(&[], |color| &color[..]));
         for target in &mesh.targets {
             let delta = target.vertices.binary_search(vertex).ok().map(|at| target.deltas[at]);
             let MorphDelta { position, normal, tangent } = delta.unwrap_or_default();
@@ -112,6 +115,10 @@ fn morphed() -> Model {
         mesh.targets.push(MorphTarget { vertices, deltas });
     }
     mesh.weights = vec![0.25, 0.0];
+    mesh.second_uv = mesh.positions.iter().map(|[x, y, _]| [0.5 * x, y + 3.0]).collect();
+    mesh.colors = mesh.positions.iter().map(|[x, y, z]| [x.abs().min(1.0), 0.1 * y, *z, 1.0]).collect();
+    let occlusion = model.materials[0].texture.map(|texture| PbrTexture { texture, uv: UvSet::Second });
+    model.materials[0].pbr = Pbr { metallic: 0.75, occlusion, emissive: [0.1, 0.2, 0.3], ..Pbr::default() };
     let values = vec![0.1, 0.0, 0.7, 1.0];
     let keys = WeightKeys::new(["t", "v"], vec![0.0, 0.5], values, Interpolation::Linear, 2);
     mesh.weight_keys = vec![(1, keys.expect("valid"))];
@@ -235,6 +242,33 @@ fn with_header(bytes: &[u8], change: &dyn Fn(&mut serde_json::Value)) -> Vec<u8>
 fn sealed(json: &[u8], rest: &[u8]) -> Vec<u8> {
     let length = (json.len() as u32).to_le_bytes();
     [b"RLV\n", &length[..], Sha256::digest(json).as_slice(), json, rest].concat()
+}
+
+/// An image is decoded at its first use. One that cannot be decoded has no texels, and its error names it.
+#[test]
+fn images_are_decoded_when_they_are_asked_for() {
+    let mut file: relievo::asset::ModelFile = relievo_samples::rock().expect("valid").into();
+    file.model.images = vec![image::RgbaImage::from_pixel(64, 16, image::Rgba([9, 8, 7, 255])).into()];
+    let source = relievo_samples::rock().expect("valid");
+    file.model.materials[0].texture = source.materials[0].texture.or(file.model.materials[0].texture);
+    let bytes = cook(&file, &mut |_| ControlFlow::Continue(())).expect("cooked").expect("not broken off");
+    let (header, first) = PackageHeader::read(&bytes).expect("a header");
+    let model = Model::from_rlv(&bytes).expect("read");
+    assert_eq!((model.images[0].size(), model.images[0].dimensions()), ([64, 16], (64, 16)));
+    assert!(model.images == file.model.images && model.images[0] == *file.model.images[0]);
+    // Zeros behind the first bytes of the PNG, which state its size.
+    let mut damaged = bytes.clone();
+    damaged[header.images[0].start + 50..header.images[0].end].fill(0);
+    let image = &damaged[header.images[0].range()];
+    let sum: String = Sha256::digest(image).iter().map(|byte| format!("{byte:02x}")).collect();
+    let mut sealed_header: serde_json::Value = serde_json::from_slice(&damaged[40..first]).expect("JSON");
+    sealed_header["images"][0]["sha256"] = sum.into();
+    let damaged = sealed(&serde_json::to_vec(&sealed_header).expect("JSON"), &damaged[first..]);
+    let model = Model::from_rlv(&damaged).expect("read");
+    assert_eq!(model.images[0].size(), [64, 16]);
+    let error = model.images[0].texels().expect_err("refused");
+    assert!(error.path == "image" && error.bound.contains("must be a whole Png"), "{error}");
+    assert!(model.images[0].is_empty() && model.to_glb().is_err());
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn model() -> Model {
     let skin =
         Material { texture: Some(texture), alpha: Alpha::Mask(0.3), ..Material::opaque("skin", [0.9; 4]) };
     model.materials = vec![skin];
-    model.images = vec![RgbaImage::from_fn(5, 3, |x, y| Rgba([50 * x as u8, 80 * y as u8, 7, 255]))];
+    model.images = vec![RgbaImage::from_fn(5, 3, |x, y| Rgba([50 * x as u8, 80 * y as u8, 7, 255])).into()];
     let mesh = &mut model.meshes[0];
     mesh.material = Some(0);
     let deltas = [0.01, -0.0, 1e-30].map(|x| MorphDelta { position: [x, 0.1, 0.0], ..MorphDelta::default() });

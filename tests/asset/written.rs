@@ -119,7 +119,7 @@ fn painted() -> Model {
     let mut model = Folder::default().read(text).expect("valid");
     let image =
         |seed: u8| RgbaImage::from_fn(3, 2, |x, y| Rgba([seed, x as u8, 9 * y as u8, 255 - 10 * seed]));
-    model.images = vec![image(1), image(2)];
+    model.images = vec![image(1).into(), image(2).into()];
     let repeat = Texture { image: 1, sampling: Sampling::default() };
     let wrap = [Wrapping::Clamp; 2];
     let clamped = Texture { image: 0, sampling: Sampling { wrap, ..Sampling::default() } };
@@ -136,6 +136,7 @@ fn painted() -> Model {
         normal: None,
         normal_scale: 1.0,
         alpha,
+        pbr: Default::default(),
     };
     let normal = Some(Texture { image: 1, sampling: nearest });
     model.materials = vec![

@@ -84,6 +84,50 @@ fn frames_are_counted() {
     assert!(world.scene.statistics().is_none() && all.statistics().is_none());
 }
 
+/// The error of a mesh at full detail, which a package has by its quantization, counts into the pixels of statistics where it
+/// exceeds what the view allows.
+#[test]
+fn the_error_of_full_detail_counts() {
+    let gpu = device();
+    let pixels_at = |error: f32, distance: f32, pixels: f32| {
+        let mut scene = Scene::new(&gpu).expect("a scene");
+        let mut quantized = relievo_samples::rock().expect("valid");
+        quantized.meshes[0].error = error;
+        let [exact, rock] = [relievo_samples::rock().expect("valid"), quantized]
+            .map(|model| scene.add_mesh(&model, 1).expect("added"));
+        scene.spawn(exact, Placement::at([0.0, 0.0, -distance])).expect("room");
+        let id = scene.spawn(rock, Placement::at([0.0, 0.0, -distance]).scaled(2.0)).expect("room");
+        scene.set_statistics(true).expect("room");
+        let mut view = scene.view(Quality::pixels(pixels)).expect("a quality");
+        view.set(Camera::looking_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, [0.5, 2000.0], SIZE)).expect("a camera");
+        submit(&mut scene, &mut [&mut view]);
+        gpu.wait().expect("done");
+        let counted = view.statistics().expect("arrived");
+        assert_eq!(counted.objects[0].pixels, pixels);
+        assert_eq!(counted.pixels, counted.objects[1].pixels);
+        // The corners of the instance's box are at least this far from the eye.
+        let [low, high] = scene.bounds(id).expect("there").world();
+        (counted.pixels, low.distance(high) as f32)
+    };
+    for distance in [30.0, 300.0] {
+        assert_eq!(pixels_at(0.0, distance, 1.0).0, 1.0);
+        assert_eq!(pixels_at(1e-4, distance, 1.0).0, 1.0);
+        let focal = 0.5 * SIZE[1] as f32 / 0.5_f32.tan();
+        for pixels in [0.0, 1.0] {
+            let (found, diagonal) = pixels_at(4.0, distance, pixels);
+            // A displacement of 8 world units at the nearest and at the middle depth.
+            let at = |depth: f32| focal * 8.0 / (depth - 8.0);
+            let most = 1.1 * at(distance - diagonal.min(0.5 * distance));
+            assert!(
+                (at(distance)..most).contains(&found),
+                "{found} at {distance}: {} to {most}",
+                at(distance)
+            );
+        }
+    }
+    assert_eq!(pixels_at(4.0, 5.0, 1.0).0, f32::INFINITY);
+}
+
 /// Bones are sampled and clusters are skinned once a frame for all views: two views of the same characters, one fine and one
 /// coarse, take what the fine one takes alone, frame by frame.
 #[test]

@@ -24,6 +24,7 @@ mod life;
 mod materials;
 mod misuse;
 mod morphing;
+mod packages;
 mod picked;
 mod pieces;
 mod placements;

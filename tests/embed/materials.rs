@@ -31,8 +31,7 @@ fn square(material: usize, x: f32) -> Mesh {
         targets: Vec::new(),
         weights: Vec::new(),
         weight_keys: Vec::new(),
-        levels: Vec::new(),
-        partners: Vec::new(),
+        ..Mesh::default()
     }
 }
 
@@ -54,6 +53,7 @@ fn material(name: &str, texture: Option<Texture>) -> Material {
         normal: None,
         normal_scale: 1.0,
         alpha: Alpha::Opaque,
+        pbr: Default::default(),
     }
 }
 
@@ -67,9 +67,9 @@ fn model(moves: bool) -> Model {
     model.skinned = 2;
     model.materials = vec![material("left", texture(0)), material("right", None)];
     model.images = vec![
-        image([[200, 60, 30, 255], [30, 60, 200, 40]]),
-        image([[10, 250, 120, 255], [250, 250, 20, 255]]),
-        image([[128, 128, 255, 255], [220, 128, 210, 255]]),
+        image([[200, 60, 30, 255], [30, 60, 200, 40]]).into(),
+        image([[10, 250, 120, 255], [250, 250, 20, 255]]).into(),
+        image([[128, 128, 255, 255], [220, 128, 210, 255]]).into(),
     ];
     model
 }
@@ -154,13 +154,13 @@ fn images_are_replaced_and_added() {
     let before = stage.shot();
     let large = RgbaImage::from_fn(8, 4, |x, y| Rgba([30 * x as u8, 60 * y as u8, 90, 255]));
     stage.scene.set_image(stage.object, 0, large.clone()).expect("replaced");
-    now.images[0] = large.clone();
+    now.images[0] = large.clone().into();
     let replaced = stage.shot();
     assert!(replaced != before && replaced == Stage::new(&gpu, &now).shot(), "another picture");
     stage.scene.set_image(stage.object, 3, image([[255; 4], [90, 9, 9, 255]])).expect("added");
     let new = material("right", texture(3));
     stage.scene.set_material(stage.object, "right", &new).expect("changed");
-    now.images.push(image([[255; 4], [90, 9, 9, 255]]));
+    now.images.push(image([[255; 4], [90, 9, 9, 255]]).into());
     now.materials[1] = new;
     let added = stage.shot();
     assert!(added != replaced && added == Stage::new(&gpu, &now).shot(), "another picture");
@@ -296,7 +296,7 @@ fn models_are_checked_when_they_are_added() {
         ),
         (refused(&|model| model.skins[0].bones[3] = 999), "model.skins[0].bones[3] = 999: must be below 153"),
         (
-            refused(&|model| model.images[0] = RgbaImage::new(9000, 2)),
+            refused(&|model| model.images[0] = RgbaImage::new(9000, 2).into()),
             &format!("model.images[0] = 9000 × 2: {most}"),
         ),
     ] {
@@ -317,7 +317,7 @@ fn normal_maps_have_their_own_filters() {
         let mut model = model(false);
         let sampling = Sampling { magnified: filter, minified: filter, mips: None, ..Sampling::default() };
         let normal = Some(Texture { image: 2, sampling });
-        model.images[0] = image([[200, 200, 200, 255]; 2]);
+        model.images[0] = image([[200, 200, 200, 255]; 2]).into();
         model.materials[0].normal = normal;
         model.meshes.truncate(1);
         model.skinned = 1;

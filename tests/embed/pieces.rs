@@ -27,6 +27,7 @@ pub fn cloth() -> Model {
         normal: None,
         normal_scale: 1.0,
         alpha: Alpha::Opaque,
+        pbr: Default::default(),
     };
     model.materials = vec![color([0.2, 0.5, 0.9, 1.0]), color([0.9, 0.3, 0.1, 1.0])];
     let border = EDGE / 4 / 2 * 2;

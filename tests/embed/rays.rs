@@ -102,9 +102,8 @@ pub fn model(corners: &[[[f32; 3]; 3]], material: Material, double_sided: bool) 
         targets: Vec::new(),
         weights: Vec::new(),
         weight_keys: Vec::new(),
-        levels: Vec::new(),
-        partners: Vec::new(),
         positions,
+        ..Mesh::default()
     };
     Model {
         skeleton: Skeleton::of_joints(vec![bone]).expect("a bone"),
@@ -114,6 +113,7 @@ pub fn model(corners: &[[[f32; 3]; 3]], material: Material, double_sided: bool) 
             inverse_binds: vec![Mat4::IDENTITY.to_cols_array()],
         }],
         clips: Vec::new(),
+        motion: None,
         meshes: vec![mesh],
         skinned: 1,
         materials: vec![material],
@@ -133,7 +133,15 @@ fn tangent(corners: &[[f32; 3]; 3]) -> [f32; 4] {
 
 /// A material of one colour.
 pub fn plain(color: [f32; 4], alpha: Alpha) -> Material {
-    Material { name: "plain".to_owned(), color, texture: None, normal: None, normal_scale: 1.0, alpha }
+    Material {
+        name: "plain".to_owned(),
+        color,
+        texture: None,
+        normal: None,
+        normal_scale: 1.0,
+        alpha,
+        pbr: Default::default(),
+    }
 }
 
 /// The twelve triangles of a cube with edges of two units around the origin, two for each side.

@@ -35,10 +35,9 @@ pub fn solid(mirrors: bool, double_sided: bool) -> Model {
         targets: Vec::new(),
         weights: Vec::new(),
         weight_keys: Vec::new(),
-        levels: Vec::new(),
-        partners: Vec::new(),
         positions,
         normals,
+        ..Mesh::default()
     };
     model.clips.clear();
     (model.meshes, model.skinned) = (vec![mesh], 1);

@@ -43,7 +43,7 @@ fn clothed() -> Model {
     let image = RgbaImage::from_fn(64, 64, |x, y| Rgba([4 * x as u8, 4 * y as u8, 90, 255]));
     let texture = Some(Texture { image: 0, sampling: Sampling::default() });
     model.materials = vec![Material { texture, ..Material::opaque("skin", [1.0; 4]) }];
-    model.images = vec![image];
+    model.images = vec![image.into()];
     model.meshes.iter_mut().for_each(|mesh| mesh.material = Some(0));
     model
 }

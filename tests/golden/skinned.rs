@@ -69,11 +69,10 @@ fn limb() -> Model {
         targets: vec![],
         weights: vec![],
         weight_keys: vec![],
-        levels: vec![],
-        partners: vec![],
+        ..Mesh::default()
     };
-    let (clips, materials, images) = (vec![], vec![], vec![]);
-    Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images }
+    let (clips, motion, materials, images) = (vec![], None, vec![], vec![]);
+    Model { skeleton, skins: vec![skin], clips, motion, meshes: vec![mesh], skinned: 1, materials, images }
 }
 
 fn rows(matrix: Mat4) -> Affine {

@@ -37,7 +37,7 @@ pub fn checkered(mut model: Model) -> Model {
         if (x / 16 + y / 16).is_multiple_of(2) { [214, 150, 104, 255] } else { [150, 82, 52, 255] }
     };
     let (index, image) = (model.materials.len(), model.images.len());
-    model.images.push(RgbaImage::from_fn(64, 64, |x, y| Rgba(square(x, y))));
+    model.images.push(RgbaImage::from_fn(64, 64, |x, y| Rgba(square(x, y))).into());
     model.materials.push(Material {
         name: "checks".to_owned(),
         color: [1.0; 4],
@@ -45,6 +45,7 @@ pub fn checkered(mut model: Model) -> Model {
         normal: None,
         normal_scale: 1.0,
         alpha: Alpha::Opaque,
+        pbr: Default::default(),
     });
     let bare = |mesh: &&mut Mesh| mesh.material.is_none();
     model.meshes.iter_mut().filter(bare).for_each(|mesh| mesh.material = Some(index));

@@ -17,11 +17,23 @@ fn cooked(model: &Model) -> Vec<u8> {
     cook(&model.clone().into(), &mut |_| ControlFlow::Continue(())).expect("cooked").expect("not broken off")
 }
 
-/// Reads a package, within its memory.
+/// Number of damaged and hostile files. `RELIEVO_MUTATIONS=1000000` tries more.
+const MUTATIONS: usize = 150_000;
+
+/// `count` times the factor by which `RELIEVO_MUTATIONS` exceeds [`MUTATIONS`].
+fn scaled(count: usize) -> usize {
+    let wanted = std::env::var("RELIEVO_MUTATIONS").ok();
+    count * wanted.map_or(MUTATIONS, |wanted| wanted.parse().expect("a number")) / MUTATIONS
+}
+
+/// Reads a package and its images, within its memory.
 fn read(bytes: &[u8]) -> Result<Model, relievo::InputError> {
     let before = MEMORY.current_usage();
     MEMORY.reset_peak_usage();
-    let outcome = Model::from_rlv(bytes);
+    let outcome = Model::from_rlv(bytes).and_then(|model| {
+        model.images.iter().try_for_each(|image| image.texels().map(|_| ()))?;
+        Ok(model)
+    });
     let peak = MEMORY.peak_usage().saturating_sub(before);
     assert!(peak <= ANY + A_BYTE * bytes.len(), "{peak} bytes for {}: {:?}", bytes.len(), outcome.err());
     outcome
@@ -66,11 +78,13 @@ impl Numbers {
 /// A package of a few hundred bytes with everything that a package can have.
 fn small() -> Vec<u8> {
     let mut model = relievo_samples::wall().expect("valid");
-    model.images = vec![image::RgbaImage::from_pixel(2, 2, image::Rgba([1, 2, 3, 255]))];
+    model.images = vec![image::RgbaImage::from_pixel(2, 2, image::Rgba([1, 2, 3, 255])).into()];
     let mesh = &mut model.meshes[0];
     let delta = MorphDelta { position: [0.5, 0.0, 0.0], ..MorphDelta::default() };
     mesh.targets = vec![MorphTarget { vertices: vec![1, 3], deltas: vec![delta; 2] }];
     mesh.weights = vec![0.5];
+    mesh.second_uv = vec![[0.25, 0.5]; mesh.vertices()];
+    mesh.colors = vec![[0.5, 1.0, 0.0, 1.0]; mesh.vertices()];
     cooked(&model)
 }
 
@@ -80,7 +94,7 @@ fn damaged_packages_are_refused_by_name() {
     let _alone = alone();
     let whole = small();
     let mut numbers = Numbers(1);
-    for _ in 0..50_000 {
+    for _ in 0..scaled(50_000) {
         let mut bytes = whole.clone();
         numbers.mutate(&mut bytes);
         if bytes == whole {
@@ -97,10 +111,12 @@ fn damaged_packages_are_refused_by_name() {
 fn hostile_packages_do_no_harm() {
     let _alone = alone();
     let mut refused = 0;
-    for (whole, count) in [(small(), 100_000), (cooked(&relievo_samples::rock().expect("valid")), 300)] {
+    let [rock, creature] =
+        ["rock", "creature"].map(|name| cooked(&relievo_samples::model(name).expect("valid")));
+    for (whole, count) in [(small(), 100_000), (rock, 300), (creature, 100)] {
         let (header, first) = PackageHeader::read(&whole).expect("a header");
         let mut numbers = Numbers(2);
-        for _ in 0..count {
+        for _ in 0..scaled(count) {
             let mut header = header.clone();
             let mut rest = Vec::new();
             let damaged = numbers.below(1 + header.levels.len() + header.images.len());
@@ -124,7 +140,7 @@ fn hostile_packages_do_no_harm() {
             refused += usize::from(read(&bytes).is_err());
         }
     }
-    assert!(refused > 50_000, "{refused}");
+    assert!(refused > scaled(50_000), "{refused}");
 }
 
 /// A package of a header whose chunks begin at 0, and its chunks.

@@ -281,6 +281,7 @@ fn machine() -> Model {
     Model {
         skins: skins.collect(),
         clips: vec![clip],
+        motion: None,
         meshes: (0..COUNT).map(part).collect(),
         skinned: 0,
         materials: vec![],

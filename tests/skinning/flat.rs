@@ -99,7 +99,7 @@ fn model(triangles: &[[Vec3; 3]], charts: Charts) -> Model {
     if charts != Charts::None {
         let mut material = Material::opaque("paint", [0.9, 0.9, 0.85, 1.0]);
         if charts == Charts::Seen {
-            model.images.push(image::RgbaImage::new(4, 4));
+            model.images.push(image::RgbaImage::new(4, 4).into());
             material.texture = Some(Texture { image: 0, sampling: Sampling::default() });
         }
         model.materials.push(material);

@@ -122,6 +122,7 @@ fn materials(samplings: usize) -> Vec<Material> {
             normal: None,
             normal_scale: 1.0,
             alpha,
+            pbr: Default::default(),
         }
     };
     (0..3 * (samplings + 1)).map(material).collect()
@@ -164,7 +165,7 @@ fn model(seed: u64) -> Model {
     let mut model = rig.model();
     let samplings = random.below(4);
     model.materials = materials(samplings);
-    model.images = vec![image::RgbaImage::new(1, 1)];
+    model.images = vec![image::RgbaImage::new(1, 1).into()];
     let count = random.below(12);
     let more: Vec<Mesh> = (0..count).map(|_| model.meshes[random.below(4)].clone()).collect();
     model.meshes.extend(more);
@@ -315,7 +316,7 @@ fn meshes_that_morph_alike_are_merged() {
 fn with_keys(keys: &[(usize, bool)], triangles: impl Fn(usize) -> usize) -> Merged {
     let mut model = Rig::PLAIN.model();
     model.materials = materials(6);
-    model.images = vec![image::RgbaImage::new(1, 1)];
+    model.images = vec![image::RgbaImage::new(1, 1).into()];
     let mesh = model.meshes[0].clone();
     let copy = |(at, (material, double_sided)): (usize, &(usize, bool))| Mesh {
         indices: mesh.indices[..3 * triangles(at)].to_vec(),
@@ -360,7 +361,7 @@ fn samplings_are_given_up_before_anything_else() {
 #[test]
 fn normal_maps_have_samplings_of_their_own() {
     let mut model = Rig::PLAIN.model();
-    model.images = vec![image::RgbaImage::new(1, 1)];
+    model.images = vec![image::RgbaImage::new(1, 1).into()];
     let texture = |number| Some(Texture { image: 0, sampling: sampling(number) });
     let looks = [(texture(0), texture(1)), (texture(0), texture(2)), (texture(0), None), (None, texture(2))];
     let plain = materials(0).remove(0);

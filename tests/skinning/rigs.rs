@@ -59,7 +59,7 @@ impl Rig {
         let skeleton = self.skeleton();
         let (skins, meshes) = self.meshes(&skeleton);
         let clips = if self.has_clips { vec![self.swing(&skeleton), self.wave(&skeleton)] } else { vec![] };
-        Model { skeleton, skins, clips, skinned: 3, meshes, materials: vec![], images: vec![] }
+        Model { skeleton, skins, clips, motion: None, skinned: 3, meshes, materials: vec![], images: vec![] }
     }
 
     fn skeleton(self) -> Skeleton {
@@ -205,8 +205,7 @@ fn mesh(skin: usize, positions: Vec<[f32; 3]>, influences: Influences) -> Mesh {
         targets: vec![],
         weights: vec![],
         weight_keys: vec![],
-        levels: vec![],
-        partners: vec![],
+        ..Mesh::default()
     }
 }
 

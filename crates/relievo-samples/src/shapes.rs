@@ -182,10 +182,11 @@ impl Builder {
                 inverse_binds: vec![glam::Mat4::IDENTITY.to_cols_array()],
             }],
             clips: Vec::new(),
+            motion: None,
             meshes: vec![mesh],
             skinned: 0,
             materials: vec![material],
-            images: image.into_iter().collect(),
+            images: image.into_iter().map(Into::into).collect(),
         })
     }
 }

@@ -56,6 +56,8 @@ pub const DECOMPRESS: &str = "decompress its textures, as `gltf-transform ktxdec
 pub struct Extensions {
     /// For each material, the `KHR_texture_transform` of its normal texture.
     pub normal_transforms: Vec<Option<TextureTransform>>,
+    /// For each material, the transform of its occlusion texture.
+    pub occlusion_transforms: Vec<Option<TextureTransform>>,
     /// For each buffer view, its meshoptimizer compression.
     pub meshopt: Vec<Option<Meshopt>>,
     /// For each mesh, the Draco compression of each of its primitives.
@@ -70,6 +72,14 @@ pub struct Extensions {
     instanced: Vec<bool>,
 }
 
+/// For each material, the transform of the texture in one of its fields.
+fn transforms(document: &Value, field: &str) -> Result<Vec<Option<TextureTransform>>, InputError> {
+    each(document, "materials", |material, path| {
+        let texture = material.get(field).unwrap_or(&Value::Null);
+        extension(texture, "KHR_texture_transform", &format!("{path}.{field}"))
+    })
+}
+
 impl Extensions {
     /// Reads the extensions of a document. `is_bare` means that materials and images are not needed.
     ///
@@ -78,10 +88,8 @@ impl Extensions {
     pub fn new(document: &Value, is_bare: bool) -> Result<Self, InputError> {
         check_required(document, is_bare)?;
         Ok(Self {
-            normal_transforms: each(document, "materials", |material, path| {
-                let texture = material.get("normalTexture").unwrap_or(&Value::Null);
-                extension(texture, "KHR_texture_transform", &format!("{path}.normalTexture"))
-            })?,
+            normal_transforms: transforms(document, "normalTexture")?,
+            occlusion_transforms: transforms(document, "occlusionTexture")?,
             meshopt: each(document, "bufferViews", |view, path| {
                 for name in MESHOPT {
                     if let Some(found) = extension::<Meshopt>(view, name, path)? {

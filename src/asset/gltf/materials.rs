@@ -2,26 +2,30 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::io::Cursor;
 
 use gltf_json::Index;
+use gltf_json::extensions::material::PbrSpecularGlossiness;
 use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::material::{AlphaMode, Material as GltfMaterial};
 use gltf_json::texture::{Info, MagFilter, MinFilter, Sampler, Texture as GltfTexture, WrappingMode};
 use gltf_json::validation::Checked;
-use image::{ImageFormat, ImageReader, RgbaImage};
+use image::{ImageFormat, RgbaImage};
 
 use super::budget::Budget;
 use super::document::Document;
 use super::extensions::DECOMPRESS;
 use crate::InputError;
-use crate::asset::material::{Alpha, Filter, MAX_TEXELS, Material, Sampling, Texture, Wrapping};
+use crate::asset::Image;
+use crate::asset::image_file::{stated_size, texels};
+use crate::asset::material::{
+    Alpha, Filter, MAX_TEXELS, Material, Pbr, PbrTexture, Sampling, Texture, UvSet, Wrapping,
+};
 
 /// Materials and images that were read so far, each once, in the order of their first use.
 #[derive(Default)]
 pub struct Materials {
     pub materials: Vec<Material>,
-    pub images: Vec<RgbaImage>,
+    pub images: Vec<Image>,
     /// The images as files; `None` if they are not kept.
     pub files: Option<Vec<Vec<u8>>>,
     /// Whether the import leaves out all materials.
@@ -52,11 +56,12 @@ impl Materials {
         let Base { color, texture, name } = Base::of(material);
         let is_fraction = |value: &f32| (0.0..=1.0).contains(value);
         InputError::check_each(&format!("{path}.{name}"), &color, is_fraction, "must be in 0..=1")?;
-        let texture = texture.map(|info| self.texture(document, info.index)).transpose()?;
+        let texture = texture.map(|info| self.texture(document, info.index, Decode::Now)).transpose()?;
         let (normal, normal_scale) = self.normal(document, &path, index)?;
         let alpha = alpha(&path, material)?;
+        let pbr = self.pbr(document, &path, index)?;
         let name = material.name.clone().unwrap_or_else(|| format!("material_{at}"));
-        self.materials.push(Material { name, color, texture, normal, normal_scale, alpha });
+        self.materials.push(Material { name, color, texture, normal, normal_scale, alpha, pbr });
         self.of_materials.insert(at, self.materials.len() - 1);
         Ok(self.materials.len() - 1)
     }
@@ -77,10 +82,60 @@ impl Materials {
             _ => return Ok((None, 1.0)),
         };
         InputError::check_finite(format!("{path}.normalTexture.scale"), info.scale)?;
-        Ok((Some(self.texture(document, info.index)?), info.scale))
+        Ok((Some(self.texture(document, info.index, Decode::Now)?), info.scale))
     }
 
-    fn texture(&mut self, document: &Document<'_>, index: Index<GltfTexture>) -> Result<Texture, InputError> {
+    /// Reads the properties of a material that scenes do not draw. A texture whose coordinates are neither the mesh's first nor its
+    /// second ones is left out, and so is one in a format that cannot be read.
+    fn pbr(
+        &mut self,
+        document: &Document<'_>,
+        path: &str,
+        index: Index<GltfMaterial>,
+    ) -> Result<Pbr, InputError> {
+        let material = &document.root.materials[index.value()];
+        let (metallic, roughness, field) = match glossy(material) {
+            Some(glossy) => {
+                (0.0, 1.0 - glossy.glossiness_factor.0, "extensions.KHR_materials_pbrSpecularGlossiness")
+            }
+            None => {
+                let rough = &material.pbr_metallic_roughness;
+                (rough.metallic_factor.0, rough.roughness_factor.0, "pbrMetallicRoughness")
+            }
+        };
+        let occlusion_strength = material.occlusion_texture.as_ref().map_or(1.0, |one| one.strength.0);
+        let emissive = material.emissive_factor.0;
+        let is_fraction = |value: &f32| (0.0..=1.0).contains(value);
+        for (field, values) in [
+            (field, &[metallic, roughness][..]),
+            ("occlusionTexture.strength", &[occlusion_strength]),
+            ("emissiveFactor", &emissive),
+        ] {
+            InputError::check_each(&format!("{path}.{field}"), values, is_fraction, "must be in 0..=1")?;
+        }
+        let (first, second) = (Coordinates::of_mesh(document, index), Coordinates::second(document, index));
+        let mut textures = [None; 3];
+        for (texture, undrawn) in textures.iter_mut().zip(Coordinates::undrawn(document, index)) {
+            let Some((index, coordinates)) = undrawn else { continue };
+            let uv = match &second {
+                _ if coordinates.are_same(&first) => UvSet::First,
+                Some(second) if coordinates.are_same(second) => UvSet::Second,
+                _ => continue,
+            };
+            if document.extensions.unread_images.get(index.value()).is_none_or(Option::is_none) {
+                *texture = Some(PbrTexture { texture: self.texture(document, index, Decode::Later)?, uv });
+            }
+        }
+        let [metallic_roughness, occlusion, emission] = textures;
+        Ok(Pbr { metallic, roughness, metallic_roughness, occlusion, occlusion_strength, emissive, emission })
+    }
+
+    fn texture(
+        &mut self,
+        document: &Document<'_>,
+        index: Index<GltfTexture>,
+        decode: Decode,
+    ) -> Result<Texture, InputError> {
         let at = index.value();
         let texture = &document.root.textures[at];
         let sampler = texture.sampler.map(|sampler| &document.root.samplers[sampler.value()]);
@@ -104,27 +159,56 @@ impl Materials {
                 format!("must be below {images}, the number of images"),
             ));
         }
-        Ok(Texture { image: self.image(document, source)?, sampling })
+        Ok(Texture { image: self.image(document, source, decode)?, sampling })
     }
 
-    fn image(&mut self, document: &Document<'_>, at: usize) -> Result<usize, InputError> {
+    fn image(&mut self, document: &Document<'_>, at: usize, decode: Decode) -> Result<usize, InputError> {
+        let path = format!("images[{at}]");
         if let Some(known) = self.of_images.get(&at) {
+            decode.check(&path, &self.images[*known])?;
             return Ok(*known);
         }
-        let path = format!("images[{at}]");
         let image = &document.root.images[at];
         let file = match (image.buffer_view, &image.uri) {
             (Some(view), _) => Cow::Borrowed(document.view(view)?.0),
             (None, Some(uri)) => Cow::Owned(document.resource(&format!("{path}.uri"), uri)?.to_vec()),
             (None, None) => return Err(InputError::new(path, "empty", "must have a bufferView or a uri")),
         };
-        self.images.push(decode(&document.budget, &path, &file)?);
+        let image = Image::of_file(file.to_vec(), size(&document.budget, &path, &file)?);
+        decode.check(&path, &image)?;
+        self.images.push(image);
         if let Some(files) = &mut self.files {
             files.push(file.into_owned());
         }
         self.of_images.insert(at, self.images.len() - 1);
         Ok(self.images.len() - 1)
     }
+}
+
+/// When an image is decoded.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Decode {
+    /// At once: damage is an error of the import.
+    Now,
+    /// At the first use of its texels.
+    Later,
+}
+
+impl Decode {
+    /// Decodes an image that must be decoded now. `path` names the image in errors.
+    fn check(self, path: &str, image: &Image) -> Result<(), InputError> {
+        match self {
+            Self::Now => {
+                image.texels().map(|_| ()).map_err(|error| InputError { path: path.to_owned(), ..error })
+            }
+            Self::Later => Ok(()),
+        }
+    }
+}
+
+/// The specular-glossiness properties of a material that has them.
+fn glossy(material: &GltfMaterial) -> Option<&PbrSpecularGlossiness> {
+    material.extensions.as_ref().and_then(|all| all.pbr_specular_glossiness.as_ref())
 }
 
 /// A material's base colour.
@@ -139,8 +223,7 @@ impl<'a> Base<'a> {
     /// Returns the base colour: from `KHR_materials_pbrSpecularGlossiness` if the material has that extension, otherwise from
     /// metallic-roughness.
     fn of(material: &'a GltfMaterial) -> Self {
-        let glossy = material.extensions.as_ref().and_then(|all| all.pbr_specular_glossiness.as_ref());
-        match (glossy, &material.pbr_metallic_roughness) {
+        match (glossy(material), &material.pbr_metallic_roughness) {
             (Some(glossy), _) => Self {
                 color: glossy.diffuse_factor.0,
                 texture: glossy.diffuse_texture.as_ref(),
@@ -158,23 +241,19 @@ impl<'a> Base<'a> {
 /// First bytes of a KTX2 image.
 const KTX2: &[u8] = b"\xabKTX 20\xbb";
 
-/// Image formats that can be decoded.
-const FORMATS: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
-
 /// Decodes a PNG, JPEG or WebP image. The first bytes decide the format, whatever `mimeType` says. Texels are charged to the
 /// budget. `path` names the image in errors.
 pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, InputError> {
-    let refused = |bound: String| InputError::new(path, format!("[{} bytes]", bytes.len()), bound);
+    texels(path, bytes, size(budget, path, bytes)?)
+}
+
+/// Width and height of an image that [`decode`] reads. Texels are charged to the budget.
+pub fn size(budget: &Budget, path: &str, bytes: &[u8]) -> Result<[u32; 2], InputError> {
     if bytes.starts_with(KTX2) {
-        return Err(refused(format!("is KTX2, which is not read: {DECOMPRESS}")));
+        let bound = format!("is KTX2, which is not read: {DECOMPRESS}");
+        return Err(InputError::new(path, format!("[{} bytes]", bytes.len()), bound));
     }
-    let format = image::guess_format(bytes).ok();
-    let Some(format) = format.filter(|format| FORMATS.contains(format)) else {
-        return Err(refused("must be PNG, JPEG or WebP".to_owned()));
-    };
-    let reader = || ImageReader::with_format(Cursor::new(bytes), format);
-    let unreadable = |error| refused(format!("must be a whole {format:?}: {error}"));
-    let (width, height) = reader().into_dimensions().map_err(unreadable)?;
+    let ([width, height], format) = stated_size(path, bytes)?;
     if width.max(height) > MAX_TEXELS {
         let bound = format!("must be at most {MAX_TEXELS} texels wide and high");
         return Err(InputError::new(path, format!("{width} × {height}"), bound));
@@ -182,7 +261,7 @@ pub fn decode(budget: &Budget, path: &str, bytes: &[u8]) -> Result<RgbaImage, In
     // WebP has no limit of texels per byte: a few bytes can encode a large image of one colour.
     let packed = if format == ImageFormat::WebP { usize::MAX } else { bytes.len() };
     budget.spend_texels(path, [width, height], packed)?;
-    Ok(reader().decode().map_err(unreadable)?.into_rgba8())
+    Ok([width, height])
 }
 
 fn alpha(path: &str, material: &GltfMaterial) -> Result<Alpha, InputError> {
@@ -243,6 +322,40 @@ impl<'a> Coordinates<'a> {
         let info = document.root.materials[index.value()].normal_texture.as_ref()?;
         let transform = document.extensions.normal_transforms.get(index.value()).and_then(Option::as_ref);
         Some(Self::new(info.tex_coord, transform))
+    }
+
+    /// Coordinates of the mesh: those of the base colour's texture, or else those of the normal map, or else the first set.
+    pub fn of_mesh(document: &'a Document<'_>, index: Index<GltfMaterial>) -> Self {
+        let of_color = Self::of_color(&document.root.materials[index.value()]);
+        let drawn = of_color.or_else(|| Self::of_normals(document, index));
+        drawn.unwrap_or(Self { set: 0, transform: None })
+    }
+
+    /// Coordinates of the first texture that is not drawn and has other coordinates than the mesh; `None` without such a texture.
+    pub fn second(document: &'a Document<'_>, index: Index<GltfMaterial>) -> Option<Self> {
+        let first = Self::of_mesh(document, index);
+        let others = Self::undrawn(document, index).into_iter().flatten().map(|(_, coordinates)| coordinates);
+        others.into_iter().find(|coordinates| !coordinates.are_same(&first))
+    }
+
+    /// The textures that scenes do not draw, with their coordinates: metallic-roughness, occlusion, emission.
+    fn undrawn(
+        document: &'a Document<'_>,
+        index: Index<GltfMaterial>,
+    ) -> [Option<(Index<GltfTexture>, Self)>; 3] {
+        let material = &document.root.materials[index.value()];
+        let info = |info: &'a Info| {
+            let transform = info.extensions.as_ref().and_then(|all| all.texture_transform.as_ref());
+            (info.index, Self::new(info.tex_coord, transform))
+        };
+        let rough = material.pbr_metallic_roughness.metallic_roughness_texture.as_ref();
+        let transform = document.extensions.occlusion_transforms.get(index.value()).and_then(Option::as_ref);
+        let occlusion = material.occlusion_texture.as_ref();
+        [
+            rough.filter(|_| glossy(material).is_none()).map(info),
+            occlusion.map(|one| (one.index, Self::new(one.tex_coord, transform))),
+            material.emissive_texture.as_ref().map(info),
+        ]
     }
 
     /// Combines a set and a transform. The transform may override the set.

@@ -36,8 +36,12 @@
 //! - Textures may use any set of texture coordinates; `KHR_texture_transform` is applied to the coordinates. A normal map is
 //!   left out if it is sampled at other coordinates than the base colour's texture.
 //! - The opacity of `BLEND` becomes a [screen-door pattern](crate::asset::material::Alpha::Dithered);
-//!   [`Model::blend`](crate::asset::Model::blend) turns the pattern into blending. Vertex colours, everything else in
-//!   materials, and materials that no mesh uses are left out.
+//!   [`Model::blend`](crate::asset::Model::blend) turns the pattern into blending. Extensions of materials, and
+//!   materials that no mesh uses, are left out.
+//! - **What scenes do not draw.** The import also reads metallic-roughness, occlusion and emission with their textures
+//!   ([`Pbr`](crate::asset::material::Pbr)), `COLOR_0`, and a second set of texture coordinates: that of the first of these
+//!   textures which lies elsewhere than the mesh's own coordinates, or else `TEXCOORD_1`. A texture that needs a third set is left
+//!   out. Their images are decoded when their texels are asked for ([`Image`](crate::asset::Image)).
 //!
 //! # Levels of detail
 //!
@@ -60,7 +64,7 @@
 //! | `KHR_draco_mesh_compression` | decompressed, even if the file also has the uncompressed data |
 //! | `EXT_meshopt_compression`, `KHR_meshopt_compression` | decompressed, even if the file also has the uncompressed data |
 //! | `KHR_mesh_quantization` | |
-//! | `KHR_texture_transform` | for the base colour and the normal map |
+//! | `KHR_texture_transform` | for all textures |
 //! | `EXT_texture_webp` | if there is no PNG or JPEG beside it |
 //! | `KHR_materials_pbrSpecularGlossiness` | the diffuse colour is the base colour |
 //! | `KHR_animation_pointer` | pointers at translation, rotation, scale and weights of nodes |
@@ -73,7 +77,7 @@
 //!
 //! | left out | remarks |
 //! |---|---|
-//! | other `KHR_materials_*` | of materials, only base colour, normal map, alpha and `doubleSided` are read; with `KHR_materials_variants`, meshes keep their default material |
+//! | other `KHR_materials_*` | of materials, only the core of glTF is read; with `KHR_materials_variants`, meshes keep their default material |
 //! | `KHR_lights_punctual`, cameras | |
 //! | `KHR_animation_pointer` with any other target | |
 //! | `KHR_node_visibility` | hidden nodes are read like others |
@@ -198,6 +202,15 @@ impl Model {
             (std::mem::take(&mut materials.materials), std::mem::take(&mut materials.images));
         let own = nodes.own_skins();
         let skinned = meshes.iter().take_while(|mesh| mesh.skin < own).count();
-        Ok(Self { skeleton: nodes.skeleton, skins: nodes.skins, clips, meshes, skinned, materials, images })
+        Ok(Self {
+            skeleton: nodes.skeleton,
+            skins: nodes.skins,
+            clips,
+            motion: None,
+            meshes,
+            skinned,
+            materials,
+            images,
+        })
     }
 }

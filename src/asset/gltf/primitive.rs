@@ -1,7 +1,7 @@
 //! Reads a primitive: vertices, triangles, influences and morph targets.
 
 use gltf_json::Index;
-use gltf_json::accessor::Accessor;
+use gltf_json::accessor::{Accessor, Type};
 use gltf_json::material::Material as GltfMaterial;
 use gltf_json::mesh::{Mode, MorphTarget as GltfTarget, Primitive, Semantic};
 use gltf_json::validation::Checked;
@@ -65,7 +65,10 @@ impl<'d> Reader<'_, 'd> {
             false => self.influences(vertices, skin.bones.len())?,
         };
         let targets = self.targets(vertices, targets)?;
+        let (second_uv, colors) = (self.second_coordinates(vertices)?, self.colors(vertices)?);
         let mut mesh = Mesh {
+            second_uv,
+            colors,
             normals,
             uv: uv.unwrap_or_else(|| vec![[0.0; 2]; vertices]),
             positions,
@@ -143,6 +146,42 @@ impl<'d> Reader<'_, 'd> {
             return Ok(None);
         }
         self.attribute::<2>(&Semantic::TexCoords(set), vertices)
+    }
+
+    /// The second set of texture coordinates: that of the first texture which is not drawn and is sampled elsewhere than the mesh's
+    /// own coordinates, or else `TEXCOORD_1`. Empty if the primitive does not have it.
+    fn second_coordinates(&self, vertices: usize) -> Result<Vec<[f32; 2]>, InputError> {
+        if self.is_bare {
+            return Ok(Vec::new());
+        }
+        let first = self.coordinates_of_material().map_or(0, |first| first.set);
+        let texture = self.primitive.material.and_then(|index| Coordinates::second(self.document, index));
+        let set = texture.as_ref().map_or(1, |texture| texture.set);
+        if texture.is_none() && first == 1 {
+            return Ok(Vec::new());
+        }
+        let mut uv = self.attribute::<2>(&Semantic::TexCoords(set), vertices)?.unwrap_or_default();
+        if let Some(texture) = texture {
+            texture.apply(&mut uv);
+        }
+        in_range(&self.named(&format!("TEXCOORD_{set}")), &uv)?;
+        Ok(uv)
+    }
+
+    /// The colours of vertices; empty if there are none. Colours without alpha are opaque.
+    fn colors(&self, vertices: usize) -> Result<Vec<[f32; 4]>, InputError> {
+        let semantic = Semantic::Colors(0);
+        let Some(elements) = self.elements(&semantic).filter(|_| !self.is_bare) else {
+            return Ok(Vec::new());
+        };
+        let path = self.named("COLOR_0");
+        match self.document.root.accessors[elements.accessor.value()].type_ {
+            Checked::Valid(Type::Vec3) => {
+                let colors = one_a_vertex(&path, elements.attributes::<3>()?, vertices)?;
+                Ok(colors.into_iter().map(|[red, green, blue]| [red, green, blue, 1.0]).collect())
+            }
+            _ => one_a_vertex(&path, elements.attributes::<4>()?, vertices),
+        }
     }
 
     fn named(&self, attribute: &str) -> String {

@@ -73,6 +73,8 @@ impl Tangents {
             mesh.positions.push(mesh.positions[at]);
             mesh.normals.push(mesh.normals[at]);
             mesh.uv.push(mesh.uv[at]);
+            mesh.second_uv.extend(mesh.second_uv.get(at).copied());
+            mesh.colors.extend(mesh.colors.get(at).copied());
             mesh.influences.repeat(at);
             mesh.targets.iter_mut().for_each(|target| target.repeat(vertex, copy));
         }

@@ -37,10 +37,17 @@ impl Mesh {
         ] {
             InputError::check_len(&format!("mesh.{field}"), len, vertices, "a vertex")?;
         }
+        for (field, len) in [("second_uv", self.second_uv.len()), ("colors", self.colors.len())] {
+            if len > 0 {
+                InputError::check_len(&format!("mesh.{field}"), len, vertices, "a vertex")?;
+            }
+        }
         in_range("mesh.positions", &self.positions)?;
         in_range("mesh.normals", &self.normals)?;
         in_range("mesh.tangents", &self.tangents)?;
         in_range("mesh.uv", &self.uv)?;
+        in_range("mesh.second_uv", &self.second_uv)?;
+        in_range("mesh.colors", &self.colors)?;
         check_triangles("mesh.indices", &self.indices, vertices)?;
         self.validate_levels()?;
         self.validate_partners()?;
@@ -48,6 +55,8 @@ impl Mesh {
     }
 
     fn validate_levels(&self) -> Result<(), InputError> {
+        let bound = || "must be finite, and not negative".to_owned();
+        InputError::check((0.0..f32::INFINITY).contains(&self.error), "mesh.error", self.error, bound)?;
         InputError::check_most("mesh.levels.len", self.levels.len(), MAX_LEVELS - 1)?;
         let mut least = 0.0;
         let mut finer = self.used(&self.indices);

@@ -14,6 +14,11 @@ pub(super) struct Entry {
     pub color: [f64; 3],
     /// Opacity: `d`, or 1 − `Tr`.
     pub opacity: f64,
+    /// Emitted colour (`Ke`), encoded as sRGB.
+    pub emissive: [f64; 3],
+    /// Metalness (`Pm`) and roughness (`Pr`).
+    pub metallic: f64,
+    pub roughness: f64,
     /// Colour map (`map_Kd`).
     pub color_map: Option<Map>,
     /// Opacity map (`map_d`).
@@ -34,7 +39,8 @@ pub(super) fn entries(file: &str, bytes: &[u8]) -> Result<Vec<Entry>, InputError
     for statement in Statements::new(bytes) {
         if statement.keyword() == "newmtl" {
             let (folder, name) = (folder.to_owned(), statement.rest().to_owned());
-            entries.push(Entry { folder, name, color: [1.0; 3], opacity: 1.0, ..Entry::default() });
+            let (color, opacity, roughness) = ([1.0; 3], 1.0, 1.0);
+            entries.push(Entry { folder, name, color, opacity, roughness, ..Entry::default() });
         } else if let Some(entry) = entries.last_mut() {
             entry.read(&statement, file)?;
         }
@@ -48,6 +54,9 @@ impl Entry {
         let one = || Ok::<_, InputError>(fractions::<1>(statement, file)?[0]);
         match statement.keyword() {
             "Kd" => self.color = fractions(statement, file)?,
+            "Ke" => self.emissive = fractions(statement, file)?,
+            "Pm" => self.metallic = one()?,
+            "Pr" => self.roughness = one()?,
             "d" => self.opacity = one()?,
             "Tr" => self.opacity = 1.0 - one()?,
             "map_Kd" => self.color_map = map()?,

@@ -14,7 +14,7 @@ use crate::asset::beside::path_below;
 use crate::asset::gltf::Beside;
 use crate::asset::gltf::budget::Budget;
 use crate::asset::gltf::materials::decode;
-use crate::asset::material::{Alpha, Material, Sampling, Texture, Wrapping};
+use crate::asset::material::{Alpha, Material, Pbr, Sampling, Texture, Wrapping};
 use crate::asset::mesh::COORDINATE_LIMIT;
 
 /// Materials of an OBJ model, from the libraries that it names. Only materials that the model uses are read, each once, with
@@ -96,7 +96,21 @@ impl<'a> Materials<'a> {
         let alpha = if has_alpha || entry.opacity < 1.0 { Alpha::Dithered } else { Alpha::Opaque };
         let color = [red, green, blue, entry.opacity as f32];
         let name = name.to_owned();
-        self.materials.push(Material { name: name.clone(), color, texture, normal, normal_scale, alpha });
+        let pbr = Pbr {
+            metallic: entry.metallic as f32,
+            roughness: entry.roughness as f32,
+            emissive: entry.emissive.map(|channel| linear(channel) as f32),
+            ..Pbr::default()
+        };
+        self.materials.push(Material {
+            name: name.clone(),
+            color,
+            texture,
+            normal,
+            normal_scale,
+            alpha,
+            pbr,
+        });
         let map = entry.color_map.or(entry.opacity_map);
         self.moves.push(map.filter(|map| map.offset != [0.0; 2] || map.scale != [1.0; 2]));
         self.known.insert(name, self.materials.len() - 1);

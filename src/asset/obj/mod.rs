@@ -11,7 +11,8 @@
 //! - A corner without a normal gets the smooth normal of its position: the area-weighted mean over all faces of the file that
 //!   meet there and lack normals. Smoothing groups are not read. Tangents are computed as for glTF.
 //! - Texture coordinates have their origin at the bottom of the image in the file, and at the top in the model.
-//! - From a material, the import reads colour (`Kd`, as sRGB), opacity (`d` or `Tr`), `map_Kd`, `map_d` and the normal map.
+//! - From a material, the import reads colour (`Kd`, as sRGB), opacity (`d` or `Tr`), `map_Kd`, `map_d` and the normal map, and
+//!   emission (`Ke`, as sRGB), metalness (`Pm`) and roughness (`Pr`), which scenes do not draw.
 //!   Opacity becomes a [screen-door pattern](crate::asset::material::Alpha::Dithered).
 //! - The normal map is `norm`, or else `map_Bump` or `bump` if that image has colours. A grey image is a height map, which is
 //!   left out.

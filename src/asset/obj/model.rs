@@ -56,10 +56,11 @@ pub(super) fn import(bytes: &[u8], beside: Option<Beside<'_>>) -> Result<Model, 
         skeleton: Skeleton::of_joints(bones)?,
         skins,
         clips: Vec::new(),
+        motion: None,
         meshes,
         skinned: 0,
         materials: materials.materials,
-        images: materials.images,
+        images: materials.images.into_iter().map(crate::asset::Image::from).collect(),
     })
 }
 

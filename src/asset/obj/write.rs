@@ -223,6 +223,14 @@ impl Library {
 fn entry(name: &str, material: &Material, texture: Option<String>, normal: Option<String>) -> String {
     let [red, green, blue] = [0, 1, 2].map(|channel: usize| encoded(material.color[channel].into()));
     let mut text = format!("newmtl {name}\nKd {red} {green} {blue}\n");
+    let pbr = &material.pbr;
+    if pbr.emissive != [0.0; 3] {
+        let [red, green, blue] = pbr.emissive.map(|channel| encoded(channel.into()));
+        text += &format!("Ke {red} {green} {blue}\n");
+    }
+    if [pbr.metallic, pbr.roughness] != [0.0, 1.0] {
+        text += &format!("Pm {}\nPr {}\n", pbr.metallic, pbr.roughness);
+    }
     let is_transparent = material.alpha != Alpha::Opaque;
     if is_transparent {
         text += &format!("d {}\n", material.color[3]);

@@ -6,7 +6,10 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::coder::{Coder, Frequencies, Numbers, damaged, scale};
-use super::grid::{Directions, Grid, TANGENT_BITS, WEIGHT_BITS, angle_of, normal_of, octahedral, tangent_of};
+use super::grid::{
+    Across, Directions, Grid, TANGENT_BITS, WEIGHT_BITS, angle_of, near_octahedral, normal_of, octahedral,
+    tangent_of,
+};
 use super::surface::{Added, NONE, Room, Surface};
 use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
@@ -20,6 +23,10 @@ pub(super) struct Grids {
     pub normals: Directions,
     pub tangents: Directions,
     pub uv: Grid,
+    /// Second texture coordinates, if there are any.
+    pub second_uv: Option<Grid>,
+    /// Colours, if there are any.
+    pub colors: Option<Grid>,
     /// [`WEIGHTS`], or the bits of the weights.
     pub weights: Grid,
     /// Positions, normals and tangents of morph targets.
@@ -59,6 +66,8 @@ impl Grids {
             normals: packed(normals),
             tangents: packed(tangents),
             uv: Grid::of(mesh.uv.as_flattened().iter()),
+            second_uv: some_grid(mesh.second_uv.as_flattened()),
+            colors: some_grid(mesh.colors.as_flattened()),
             weights,
             deltas: [
                 deltas(|delta| &delta.position),
@@ -67,6 +76,11 @@ impl Grids {
             ],
         }
     }
+}
+
+/// The coarsest grid that has all values, if there are values.
+fn some_grid(values: &[f32]) -> Option<Grid> {
+    (!values.is_empty()).then(|| Grid::of(values.iter()))
 }
 
 fn bits<const N: usize>(values: [f32; N]) -> [u32; N] {
@@ -81,6 +95,8 @@ pub(super) struct AttributeContexts {
     tangents: Vec<Numbers>,
     sign: Vec<Frequencies>,
     uv: Vec<Numbers>,
+    second_uv: Vec<Numbers>,
+    colors: Vec<Numbers>,
     are_copies: Frequencies,
     /// By the number of influences of the point that predicts.
     counts: Vec<Frequencies>,
@@ -101,6 +117,8 @@ impl AttributeContexts {
             tangents: numbers(4),
             sign: symbols(3, 2),
             uv: numbers(2 * SCALES),
+            second_uv: numbers(2 * SCALES),
+            colors: numbers(4 * SCALES),
             are_copies: Frequencies::new(2),
             counts: symbols(MAX_INFLUENCES + 1, MAX_INFLUENCES),
             bones: symbols(MAX_INFLUENCES, MAX_INFLUENCES + 1),
@@ -128,6 +146,8 @@ pub(super) struct Attributes {
     normals: Vec<[f32; 3]>,
     tangents: Vec<[f32; 4]>,
     uv: Vec<[i32; 2]>,
+    second_uv: Vec<[i32; 2]>,
+    colors: Vec<[i32; 4]>,
     /// By target: the vertices that it moves, ascending, and their deltas.
     targets: Vec<(Vec<u32>, Vec<[i32; 9]>)>,
 }
@@ -162,6 +182,8 @@ impl Attributes {
             normals: Vec::new(),
             tangents: Vec::new(),
             uv: Vec::new(),
+            second_uv: Vec::new(),
+            colors: Vec::new(),
             targets: vec![(Vec::new(), Vec::new()); targets],
         }
     }
@@ -184,7 +206,19 @@ impl Attributes {
         let around = Around::new(&surface.corners, &added.vertices, &added.edges);
         self.code_normals(coder, contexts, surface, &around, written)?;
         self.code_tangents(coder, contexts, surface, &around, written)?;
-        self.code_uv(coder, contexts, &around, written)?;
+        code_values(coder, &mut contexts.uv, &around, &mut self.uv, |vertex| {
+            wanted(written, vertex, self.grids.uv, |mesh| &mesh.uv)
+        })?;
+        if let Some(grid) = self.grids.second_uv {
+            code_values(coder, &mut contexts.second_uv, &around, &mut self.second_uv, |vertex| {
+                wanted(written, vertex, grid, |mesh| &mesh.second_uv)
+            })?;
+        }
+        if let Some(grid) = self.grids.colors {
+            code_values(coder, &mut contexts.colors, &around, &mut self.colors, |vertex| {
+                wanted(written, vertex, grid, |mesh| &mesh.colors)
+            })?;
+        }
         self.code_targets(coder, contexts, room, (surface, &around), written)
     }
 
@@ -380,13 +414,13 @@ impl Attributes {
                 }
             }
         }
-        let sum = sum.to_array().map(|part| part as f32);
         match self.grids.normals {
             Directions::Packed => {
-                let [u, v] = octahedral(sum).map(i64::from);
+                let [u, v] = near_octahedral(sum).map(i64::from);
                 [u, v, 0]
             }
             Directions::Bits => {
+                let sum = sum.to_array().map(|part| part as f32);
                 let length = DVec3::from(sum.map(f64::from)).length();
                 sum.map(|part| i64::from(Grid::Bits.whole((f64::from(part) / length.max(1e-30)) as f32)))
             }
@@ -418,16 +452,17 @@ impl Attributes {
             });
             let tangent = match self.grids.tangents {
                 Directions::Packed => {
-                    let normal = self.normals[vertex as usize];
+                    let across = Across::new(self.normals[vertex as usize]);
                     let near = near.map(|near| self.tangents[near as usize]);
-                    let likely = near.map_or(0, |near| angle_of(normal, near));
+                    let likely = near.map_or(0, |near| across.angle(near));
                     let context = near.map_or(2, |near| usize::from(near[3] < 0.0));
                     let sign = coder.symbol(&mut contexts.sign[context], usize::from(wanted[3] < 0.0))?;
-                    let turn = i64::from(angle_of(normal, wanted) - likely);
+                    let wanted = written.map_or(likely, |_| across.angle(wanted));
+                    let turn = i64::from(wanted - likely);
                     let turn = (turn + TURN / 2).rem_euclid(TURN) - TURN / 2;
                     let turn = contexts.tangents[0].code(coder, turn)?;
                     let angle = (i64::from(likely) + turn).rem_euclid(TURN) as i32;
-                    tangent_of(normal, angle, if sign == 1 { -1.0 } else { 1.0 })
+                    across.tangent(angle, if sign == 1 { -1.0 } else { 1.0 })
                 }
                 Directions::Bits => {
                     let near = near.map_or([0.0; 4], |near| self.tangents[near as usize]);
@@ -442,26 +477,6 @@ impl Attributes {
                 }
             };
             self.tangents.push(tangent);
-        }
-        Ok(())
-    }
-
-    fn code_uv(
-        &mut self,
-        coder: &mut impl Coder,
-        contexts: &mut AttributeContexts,
-        around: &Around<'_>,
-        written: Option<Written<'_>>,
-    ) -> Result<(), InputError> {
-        let mut last = 0;
-        for vertex in around.range.clone() {
-            let near = mean(&self.uv, around.known(vertex));
-            let near = near.or(self.uv.last().map(|near| near.map(i64::from))).unwrap_or_default();
-            let wanted = written.map_or([0; 2], |written| {
-                let uv = written.mesh.uv[written.vertices[vertex as usize] as usize];
-                uv.map(|part| self.grids.uv.whole(part))
-            });
-            self.uv.push(residuals(coder, &mut contexts.uv, &mut last, near, wanted)?);
         }
         Ok(())
     }
@@ -520,6 +535,12 @@ impl Attributes {
         mesh.normals.clone_from(&self.normals);
         mesh.tangents.clone_from(&self.tangents);
         mesh.uv = self.uv.iter().map(|uv| uv.map(|part| self.grids.uv.float(part))).collect();
+        if let Some(grid) = self.grids.second_uv {
+            mesh.second_uv = self.second_uv.iter().map(|uv| uv.map(|part| grid.float(part))).collect();
+        }
+        if let Some(grid) = self.grids.colors {
+            mesh.colors = self.colors.iter().map(|color| color.map(|part| grid.float(part))).collect();
+        }
         let influence = |(bone, weight): &(u32, i32)| Influence {
             bone: *bone,
             weight: self.grids.weights.float(*weight),
@@ -604,6 +625,35 @@ fn mean<const N: usize>(values: &[[i32; N]], of: impl Iterator<Item = u32>) -> O
         }
     }
     (count > 0).then(|| sum.map(|sum| (2 * sum + count).div_euclid(2 * count)))
+}
+
+/// The whole numbers of a value of a vertex to write; 0 when reading.
+fn wanted<const N: usize>(
+    written: Option<Written<'_>>,
+    vertex: u32,
+    grid: Grid,
+    values: impl Fn(&Mesh) -> &[[f32; N]],
+) -> [i32; N] {
+    written.map_or([0; N], |written| {
+        values(written.mesh)[written.vertices[vertex as usize] as usize].map(|part| grid.whole(part))
+    })
+}
+
+/// Codes a value for each new vertex, predicted by the mean of its neighbours.
+fn code_values<const N: usize>(
+    coder: &mut impl Coder,
+    contexts: &mut [Numbers],
+    around: &Around<'_>,
+    values: &mut Vec<[i32; N]>,
+    wanted: impl Fn(u32) -> [i32; N],
+) -> Result<(), InputError> {
+    let mut last = 0;
+    for vertex in around.range.clone() {
+        let near = mean(values, around.known(vertex));
+        let near = near.or(values.last().map(|near| near.map(i64::from))).unwrap_or([0; N]);
+        values.push(residuals(coder, contexts, &mut last, near, wanted(vertex))?);
+    }
+    Ok(())
 }
 
 /// Codes values by their differences from `near`. `last` is the scale of the last residuals.

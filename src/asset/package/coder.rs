@@ -73,8 +73,10 @@ impl EncoderModel<PRECISION> for Frequencies {
 
 impl DecoderModel<PRECISION> for Frequencies {
     fn quantile_function(&self, quantile: u32) -> (usize, u32, NonZeroU32) {
-        let is_below = |below: &&u16| u32::from(**below) <= quantile;
-        let symbol = self.below[1..].iter().filter(is_below).count();
+        // Sums of 16 bits are added for several symbols at once.
+        let quantile = quantile as u16;
+        let symbol: u16 = self.below[1..].iter().map(|below| u16::from(*below <= quantile)).sum();
+        let symbol = usize::from(symbol);
         let from = self.cumulative(symbol);
         let size = self.cumulative(symbol + 1) - from;
         (symbol, from, NonZeroU32::MIN.saturating_add(size - 1))

@@ -111,20 +111,29 @@ fn unit(vector: DVec3) -> [f32; 3] {
     (vector / vector.dot(vector).sqrt()).to_array().map(|part| part as f32 + 0.0)
 }
 
+/// Where the line from the origin along a vector meets the octahedron, in units of places; the middle if the vector is 0.
+fn on_octahedron(vector: DVec3) -> [f64; 2] {
+    let sum = vector.x.abs() + vector.y.abs() + vector.z.abs();
+    if sum.is_nan() || sum <= 0.0 {
+        return [0.0; 2];
+    }
+    let flat = vector / sum;
+    let place = match flat.z < 0.0 {
+        true => [(1.0 - flat.y.abs()).copysign(flat.x), (1.0 - flat.x.abs()).copysign(flat.y)],
+        false => [flat.x, flat.y],
+    };
+    place.map(|part| part * f64::from(OCTAHEDRON))
+}
+
+/// A place on the octahedron near a vector, which need not have length 1.
+pub(super) fn near_octahedral(vector: DVec3) -> [i32; 2] {
+    on_octahedron(vector).map(|part| part.round_ties_even() as i32)
+}
+
 /// The place on the octahedron whose unit vector is nearest to a normal.
 pub(super) fn octahedral(normal: [f32; 3]) -> [i32; 2] {
     let wanted = DVec3::from(normal.map(f64::from));
-    let sum = wanted.x.abs() + wanted.y.abs() + wanted.z.abs();
-    if sum.is_nan() || sum <= 0.0 {
-        return [0; 2];
-    }
-    let flat = wanted / sum;
-    let [x, y] = if flat.z < 0.0 {
-        [(1.0 - flat.y.abs()).copysign(flat.x), (1.0 - flat.x.abs()).copysign(flat.y)]
-    } else {
-        [flat.x, flat.y]
-    };
-    let [u, v] = [x, y].map(|part| (part * f64::from(OCTAHEDRON)).floor() as i32);
+    let [u, v] = on_octahedron(wanted).map(|part| part.floor() as i32);
     let near = [[u, v], [u + 1, v], [u, v + 1], [u + 1, v + 1]];
     let near = near.map(|place| place.map(|part| part.clamp(-OCTAHEDRON, OCTAHEDRON)));
     let facing = |place: &[i32; 2]| wanted.dot(DVec3::from(normal_of(*place).map(f64::from)));
@@ -132,7 +141,10 @@ pub(super) fn octahedral(normal: [f32; 3]) -> [i32; 2] {
     best.unwrap_or_default()
 }
 
-/// Two directions across a normal, perpendicular to each other.
+/// Two directions across a normal, perpendicular to each other. Tangents are angles between them.
+#[derive(Clone, Copy)]
+pub(super) struct Across([DVec3; 2]);
+
 fn across(normal: [f32; 3]) -> [DVec3; 2] {
     let normal = DVec3::from(normal.map(f64::from));
     let least = normal.abs();
@@ -154,35 +166,51 @@ const QUARTER: i32 = 1 << (TANGENT_BITS - 2);
 /// The tangent at an angle around its normal. Angles are places on a square, 2^[`TANGENT_BITS`] in a turn. The sign is that of
 /// the bitangent.
 pub(super) fn tangent_of(normal: [f32; 3], angle: i32, sign: f32) -> [f32; 4] {
-    let part = f64::from(angle.rem_euclid(QUARTER)) / f64::from(QUARTER);
-    let (x, y) = match angle.div_euclid(QUARTER).rem_euclid(4) {
-        0 => (1.0 - part, part),
-        1 => (-part, 1.0 - part),
-        2 => (part - 1.0, -part),
-        _ => (part, part - 1.0),
-    };
-    let [first, second] = across(normal);
-    let [x, y, z] = unit(first * x + second * y);
-    [x, y, z, sign]
+    Across::new(normal).tangent(angle, sign)
 }
 
 /// The angle of a tangent around its normal.
 pub(super) fn angle_of(normal: [f32; 3], tangent: [f32; 4]) -> i32 {
-    let [x, y, z, _] = tangent.map(f64::from);
-    let [first, second] = across(normal);
-    let tangent = DVec3::new(x, y, z);
-    let (x, y) = (tangent.dot(first), tangent.dot(second));
-    let sum = x.abs() + y.abs();
-    if sum.is_nan() || sum <= 0.0 {
-        return 0;
+    Across::new(normal).angle(tangent)
+}
+
+impl Across {
+    pub fn new(normal: [f32; 3]) -> Self {
+        Self(across(normal))
     }
-    let turns = match (x >= 0.0, y >= 0.0) {
-        (true, true) => y / sum,
-        (false, true) => 1.0 - x / sum,
-        (false, false) => 2.0 - y / sum,
-        (true, false) => 3.0 + x / sum,
-    };
-    (turns * f64::from(QUARTER)).round_ties_even() as i32 & (4 * QUARTER - 1)
+
+    /// As [`tangent_of`].
+    pub fn tangent(self, angle: i32, sign: f32) -> [f32; 4] {
+        let part = f64::from(angle.rem_euclid(QUARTER)) / f64::from(QUARTER);
+        let (x, y) = match angle.div_euclid(QUARTER).rem_euclid(4) {
+            0 => (1.0 - part, part),
+            1 => (-part, 1.0 - part),
+            2 => (part - 1.0, -part),
+            _ => (part, part - 1.0),
+        };
+        let Self([first, second]) = self;
+        let [x, y, z] = unit(first * x + second * y);
+        [x, y, z, sign]
+    }
+
+    /// As [`angle_of`].
+    pub fn angle(self, tangent: [f32; 4]) -> i32 {
+        let [x, y, z, _] = tangent.map(f64::from);
+        let Self([first, second]) = self;
+        let tangent = DVec3::new(x, y, z);
+        let (x, y) = (tangent.dot(first), tangent.dot(second));
+        let sum = x.abs() + y.abs();
+        if sum.is_nan() || sum <= 0.0 {
+            return 0;
+        }
+        let turns = match (x >= 0.0, y >= 0.0) {
+            (true, true) => y / sum,
+            (false, true) => 1.0 - x / sum,
+            (false, false) => 2.0 - y / sum,
+            (true, false) => 3.0 + x / sum,
+        };
+        (turns * f64::from(QUARTER)).round_ties_even() as i32 & (4 * QUARTER - 1)
+    }
 }
 
 #[cfg(test)]

@@ -120,16 +120,17 @@ impl<'a> LeveledMesh<'a> {
         self.levels.last().map_or(0, |indices| indices.len() / 3)
     }
 
-    /// The mesh with the levels that were coded so far.
+    /// The mesh with the levels that were coded so far. `quantization` is the error of the finest level.
     ///
     /// # Errors
     /// [`InputError`] for influences that no vertex can have.
-    pub fn mesh(&self, parts: &MeshParts) -> Result<Mesh, InputError> {
+    pub fn mesh(&self, parts: &MeshParts, quantization: f32) -> Result<Mesh, InputError> {
         let mut mesh = parts.mesh();
         self.attributes.set(&self.surface, &mut mesh)?;
         let mut levels = self.levels.iter().rev();
         mesh.indices = levels.next().cloned().unwrap_or_default();
         let first = parts.errors.len() + 1 - self.levels.len();
+        mesh.error = first.checked_sub(1).map_or(quantization, |level| parts.errors[level]);
         let level =
             |(indices, error): (&Vec<u32>, &f32)| MeshLevel { indices: indices.clone(), error: *error };
         mesh.levels = levels.zip(&parts.errors[first..]).map(level).collect();

@@ -27,10 +27,9 @@ mod snap;
 mod surface;
 mod write;
 
-use image::RgbaImage;
-
 use super::gltf::budget::Budget;
 use super::gltf::materials;
+use super::image_file::Image;
 use super::model::Model;
 use crate::InputError;
 use crate::hash::sha256;
@@ -71,7 +70,7 @@ pub struct Package {
     room: Room,
     /// Number of levels that were read.
     levels: usize,
-    images: Vec<RgbaImage>,
+    images: Vec<Image>,
     budget: Budget,
 }
 
@@ -88,6 +87,8 @@ impl Package {
         };
         header.model.check("package.model", chunk)?;
         let parts = Parts::unpacked(chunk)?;
+        let motion = parts.motion.iter().try_for_each(|motion| motion.check(parts.clips.len()));
+        motion.map_err(|error| error.below("package.model"))?;
         let level_bytes = header.level_bytes();
         let room = Room {
             points: header.vertices(),
@@ -169,8 +170,8 @@ impl Package {
     /// Reads the chunk of the next image.
     ///
     /// # Errors
-    /// [`InputError`] if there is no further image, for bytes that are not those of the chunk, and for an image that cannot be
-    /// decoded.
+    /// [`InputError`] if there is no further image, for bytes that are not those of the chunk, and for an image whose size cannot
+    /// be read. The image is decoded later ([`Image::texels`]).
     pub fn add_image(&mut self, bytes: &[u8]) -> Result<(), InputError> {
         let path = format!("package.images[{}]", self.images.len());
         let Some(chunk) = self.header.images.get(self.images.len()) else {
@@ -178,7 +179,8 @@ impl Package {
             return Err(InputError::new(path, self.images.len(), bound));
         };
         chunk.check(&path, bytes)?;
-        self.images.push(materials::decode(&self.budget, &path, bytes)?);
+        let size = materials::size(&self.budget, &path, bytes)?;
+        self.images.push(Image::of_file(bytes.to_vec(), size));
         Ok(())
     }
 
@@ -189,24 +191,23 @@ impl Package {
     pub fn model(&self) -> Result<Model, InputError> {
         let mut materials = self.parts.materials.clone();
         for material in &mut materials {
-            for texture in [&mut material.texture, &mut material.normal] {
-                // A texture that is not there yet is not shown.
-                *texture = texture.filter(|texture| {
-                    !(self.images.len()..self.header.images.len()).contains(&texture.image)
-                });
-            }
+            // A texture that is not there yet is not shown.
+            let is_missing = |image| (self.images.len()..self.header.images.len()).contains(&image);
+            material.map_textures(|texture| Some(texture).filter(|texture| !is_missing(texture.image)));
         }
-        let meshes = self.meshes.iter().zip(&self.parts.meshes);
-        let model = Model {
+        let (meshes, quantization) = (self.meshes.iter().zip(&self.parts.meshes), self.header.quantization);
+        let mut model = Model {
             skeleton: self.parts.skeleton.clone(),
             skins: self.parts.skins.clone(),
             clips: self.parts.clips.clone(),
-            meshes: meshes.map(|(mesh, parts)| mesh.mesh(parts)).collect::<Result<_, _>>()?,
+            motion: None,
+            meshes: meshes.map(|(mesh, parts)| mesh.mesh(parts, quantization)).collect::<Result<_, _>>()?,
             skinned: self.parts.skinned,
             materials,
             images: self.images.clone(),
         };
         model.check().map_err(|error| error.below("package"))?;
+        model.motion = self.parts.motion.clone().map(|motion| motion.with_model(&model));
         Ok(model)
     }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::attributes::Grids;
 use super::surface::Partners;
 use crate::InputError;
-use crate::asset::{Clip, Material, Mesh, Model, Skeleton, Skin, WeightKeys};
+use crate::asset::{Clip, Material, Mesh, Model, MotionBounds, Skeleton, Skin, WeightKeys};
 
 /// Number of bytes that any chunk may unpack to, and that each of its bytes adds.
 const UNPACKED: usize = 1 << 20;
@@ -21,6 +21,8 @@ pub(super) struct Parts {
     pub skeleton: Skeleton,
     pub skins: Vec<Skin>,
     pub clips: Vec<Clip>,
+    /// Bounds without the model that they were computed from.
+    pub motion: Option<MotionBounds>,
     pub skinned: usize,
     pub materials: Vec<Material>,
     pub meshes: Vec<MeshParts>,
@@ -49,6 +51,7 @@ impl Parts {
             skeleton: model.skeleton.clone(),
             skins: model.skins.clone(),
             clips: model.clips.clone(),
+            motion: model.motion.clone().map(MotionBounds::unbound),
             skinned: model.skinned,
             materials: model.materials.clone(),
             meshes,

@@ -14,6 +14,9 @@ const POSITION_BITS: i32 = 15;
 /// Texture coordinates have a step of 2⁻¹⁴, unless they are very large.
 const UV_BITS: i32 = 14;
 
+/// Colours of vertices have a step of 2⁻¹⁰, unless they are very large.
+const COLOR_BITS: i32 = 10;
+
 /// Normals and tangents of morph targets have a step of 2⁻¹⁰.
 const DIRECTIONS: Grid = Grid::Step(-10);
 
@@ -39,6 +42,10 @@ pub(crate) fn snapped(model: &Model) -> Result<Model, InputError> {
         mesh.positions.as_flattened_mut().iter_mut().for_each(|value| *value = grid.snapped(*value));
         let uv = Grid::fitting(1.0, largest(&mut mesh.uv.as_flattened().iter().copied()), UV_BITS);
         mesh.uv.as_flattened_mut().iter_mut().for_each(|value| *value = uv.snapped(*value));
+        let second = Grid::fitting(1.0, largest(&mut mesh.second_uv.as_flattened().iter().copied()), UV_BITS);
+        mesh.second_uv.as_flattened_mut().iter_mut().for_each(|value| *value = second.snapped(*value));
+        let colors = Grid::fitting(1.0, largest(&mut mesh.colors.as_flattened().iter().copied()), COLOR_BITS);
+        mesh.colors.as_flattened_mut().iter_mut().for_each(|value| *value = colors.snapped(*value));
         for (normal, tangent) in mesh.normals.iter_mut().zip(&mut mesh.tangents) {
             // A normal of 0 has no direction.
             if *normal != [0.0; 3] {
@@ -105,7 +112,9 @@ fn welded_mesh(mesh: &Mesh) -> Result<Mesh, InputError> {
             let at = *vertex as usize;
             let mut key = vec![points[at]];
             let (normal, tangent) = (mesh.normals[at].iter(), mesh.tangents[at].iter());
-            key.extend(normal.chain(tangent).chain(&mesh.uv[at]).map(|value| value.to_bits()));
+            let second = mesh.second_uv.get(at).into_iter().flatten();
+            let others = second.chain(mesh.colors.get(at).into_iter().flatten());
+            key.extend(normal.chain(tangent).chain(&mesh.uv[at]).chain(others).map(|value| value.to_bits()));
             key.extend(&deltas[at]);
             indices.push(*known.entry(key).or_insert_with(|| {
                 order.push(*vertex);
@@ -129,6 +138,8 @@ fn welded_mesh(mesh: &Mesh) -> Result<Mesh, InputError> {
         normals: taken(&mesh.normals, &order),
         tangents: taken(&mesh.tangents, &order),
         uv: taken(&mesh.uv, &order),
+        second_uv: taken(&mesh.second_uv, &order),
+        colors: taken(&mesh.colors, &order),
         indices,
         influences: Influences::stored("mesh.influences", influences)?,
         targets: mesh.targets.iter().map(target).collect(),
@@ -136,6 +147,7 @@ fn welded_mesh(mesh: &Mesh) -> Result<Mesh, InputError> {
     })
 }
 
+/// The values of some vertices; none if there are no values.
 fn taken<T: Copy>(values: &[T], order: &[u32]) -> Vec<T> {
-    order.iter().map(|vertex| values[*vertex as usize]).collect()
+    order.iter().filter_map(|vertex| values.get(*vertex as usize).copied()).collect()
 }

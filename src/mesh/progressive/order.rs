@@ -40,8 +40,10 @@ pub(super) fn permuted(mesh: &Mesh, order: &[u32]) -> Result<Mesh, InputError> {
         targets: mesh.targets.iter().map(|target| moved(target, &place)).collect(),
         weights: mesh.weights.clone(),
         weight_keys: mesh.weight_keys.clone(),
+        error: mesh.error,
         levels: mesh.levels.iter().map(level).collect(),
         partners: if mesh.levels.is_empty() { Vec::new() } else { placed(&taken(&mesh.partners, order)) },
+        ..Mesh::default()
     })
 }
 

@@ -30,6 +30,9 @@ pub(super) struct Stored {
     targets: Vec<StoredTarget>,
     weights: Vec<u32>,
     weight_keys: Vec<StoredKeys>,
+    /// Bits of the mesh's own error, if it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    error: Option<u32>,
     partners: Vec<u32>,
     triangles: Vec<u32>,
     levels: Vec<StoredLevel>,
@@ -97,6 +100,7 @@ impl From<ProgressiveMesh> for Stored {
             targets: mesh.targets.iter().map(StoredTarget::from).collect(),
             weights: bits(&mesh.weights),
             weight_keys: mesh.weight_keys.iter().map(StoredKeys::from).collect(),
+            error: (mesh.error > 0.0).then_some(mesh.error.to_bits()),
             partners: mesh.partners.clone(),
             triangles: all.indices(all.levels() - 1).to_vec(),
             levels: (0..all.levels()).map(level).collect(),
@@ -188,8 +192,10 @@ impl Stored {
             targets: self.targets.into_iter().map(StoredTarget::read).collect(),
             weights: floats(&self.weights),
             weight_keys: self.weight_keys.into_iter().enumerate().map(keys).collect::<Result<_, _>>()?,
+            error: self.error.map_or(0.0, f32::from_bits),
             levels,
             partners: self.partners,
+            ..Mesh::default()
         };
         Ok((mesh, self.sources))
     }

@@ -26,6 +26,7 @@ use crate::scene::playing::Playing;
 use crate::shared::lod::assign::AssignParams;
 use crate::skinning::bounding_sphere::{BoundingSphere, followed};
 use crate::skinning::merged::Merged;
+use crate::skinning::{motion_bounds, spheres};
 use crate::{Error, InputError};
 use detail::Detail;
 pub use detail::SkeletonStatistics;
@@ -83,9 +84,9 @@ impl Character {
         (capacity, keeps_last): (usize, bool),
     ) -> Result<Self, Error> {
         let motions = options.root_motion.map(|root| root.take(&mut merged.model)).transpose()?;
+        merged.model.motion = Some(motion_bounds(&merged.model)?);
         let model = &merged.model;
-        let spheres: Vec<_> =
-            (0..model.clips.len()).map(|clip| BoundingSphere::in_clip(model, clip)).collect();
+        let spheres = model.motion.as_ref().map(spheres).unwrap_or_default();
         let Detail { tiers, set, gate, assign } = Detail::new(options, model, spheres[0].radius)?;
         let bone = |name: &str| model.bone(name);
         let layers = CharacterLayer::of_masks(model, &options.layers, bone, capacity)?;
@@ -184,5 +185,45 @@ impl Character {
             runtime.fit(gpu, fitted.layout, fitted.assign, params)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::asset::{Model, MotionBounds};
+    use crate::gpu::{Gpu, Options};
+    use crate::scene::{Camera, Placement, Quality, Scene};
+
+    /// Bounds of a hostile package may hide a character, or show it where it is not seen. They do no other harm.
+    #[test]
+    fn wrong_bounds_are_no_crash() {
+        let gpu = Gpu::headless(&Options::default()).expect("the suite needs an adapter");
+        let model = crate::samples::creature().expect("valid");
+        for (sphere, stray) in [
+            ([0.0; 4], 0.0),
+            ([f32::MAX; 4], f32::MAX),
+            ([-f32::MAX, f32::MAX, 0.0, 1e-30], 1e-30),
+            ([1e20, 0.0, 0.0, 0.0], 1e20),
+        ] {
+            let motion = MotionBounds::new(&model, vec![sphere; model.clips.len()], stray);
+            assert!(motion.fit(&model));
+            let model = Model { motion: Some(motion), ..model.clone() };
+            let mut scene = Scene::new(&gpu).expect("a scene");
+            let object = scene.add_character(&model, 2).expect("added");
+            assert_eq!(scene.objects.iter().next().expect("one").sphere.radius, sphere[3]);
+            let one = scene.spawn(object, Placement::at([0.0, 0.0, -5.0])).expect("room");
+            let mut view = scene.view(Quality::pixels(1.0)).expect("a view");
+            let camera = Camera::looking_at(glam::Vec3::Y, glam::Vec3::NEG_Z, 0.9, [0.1, 100.0], [64, 64]);
+            view.set(camera).expect("a camera");
+            scene.set_statistics(true).expect("room");
+            for _ in 0..3 {
+                scene.advance(0.1).expect("finite");
+                let mut encoder = gpu.encoder("frame");
+                scene.record(&mut encoder, &mut [&mut view]).expect("recorded");
+                gpu.queue().submit([encoder.finish()]);
+                gpu.wait().expect("done");
+            }
+            assert!(view.statistics().is_some() && scene.bounds(one).is_ok());
+        }
     }
 }

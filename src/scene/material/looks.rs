@@ -3,8 +3,8 @@
 use image::RgbaImage;
 
 use super::textures::check_image;
-use crate::asset::Model;
 use crate::asset::material::{Alpha, Material};
+use crate::asset::{Image, Model};
 use crate::gpu::Gpu;
 use crate::{InputError, error};
 
@@ -12,7 +12,7 @@ use crate::{InputError, error};
 #[derive(Debug)]
 pub(crate) struct Looks {
     pub materials: Vec<Material>,
-    pub images: Vec<RgbaImage>,
+    pub images: Vec<Image>,
 }
 
 impl Looks {
@@ -67,10 +67,8 @@ impl Looks {
         {
             return Err(InputError::new(format!("{path}.alpha"), cutoff, "must be finite"));
         }
-        for (field, texture) in [("texture", material.texture), ("normal", material.normal)] {
-            if let Some(texture) = texture
-                && texture.image >= self.images.len()
-            {
+        for (field, texture) in material.textures() {
+            if texture.image >= self.images.len() {
                 let bound = format!("must be below {}, the number of images", self.images.len());
                 return Err(InputError::new(format!("{path}.{field}.image"), texture.image, bound));
             }
@@ -89,14 +87,14 @@ impl Looks {
         gpu: &Gpu,
         index: usize,
         image: RgbaImage,
-    ) -> Result<Option<RgbaImage>, InputError> {
+    ) -> Result<Option<Image>, InputError> {
         check_image(gpu, "image", &image)?;
         let bound = || format!("must be at most {}, which adds an image", self.images.len());
         InputError::check(index <= self.images.len(), "index", index, bound)?;
         match self.images.get_mut(index) {
-            Some(old) => Ok(Some(std::mem::replace(old, image))),
+            Some(old) => Ok(Some(std::mem::replace(old, image.into()))),
             None => {
-                self.images.push(image);
+                self.images.push(image.into());
                 Ok(None)
             }
         }

@@ -244,7 +244,7 @@ fn entry(
     };
     let Material { color, alpha, texture, normal, normal_scale, .. } = material;
     let layer = |image: usize, field: &str, layers: &mut Layers| {
-        if looks.images.get(image).is_none_or(|image| image.is_empty()) {
+        if looks.images.get(image).is_none_or(|image| image.size().contains(&0)) {
             let bound = format!("must be below {}, and the image must have texels", looks.images.len());
             return Err(InputError::new(format!("materials[{index}].{field}.image"), image, bound));
         }

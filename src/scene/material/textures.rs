@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
+use crate::asset::Image;
 use crate::gpu::{Gpu, GpuError};
 use crate::surface::mips::Mips;
 use crate::{Error, InputError, srgb};
@@ -26,22 +27,25 @@ pub(super) enum Texels {
 /// array has all mip levels. If `images` is empty, the array is one texel: white, or a flat normal.
 ///
 /// # Errors
-/// [`InputError`] for an image that [`check_image`] refuses; [`GpuError`], also if there are more images than a texture
+/// [`InputError`] for an image that cannot be decoded or that [`check_image`] refuses; [`GpuError`], also if there are more images than a texture
 /// array may have layers.
 pub(super) fn texture_array(
     gpu: &Gpu,
-    all: &[RgbaImage],
+    all: &[Image],
     images: &[usize],
     texels: Texels,
     has_mips: bool,
 ) -> Result<wgpu::TextureView, Error> {
-    for at in images {
-        check_image(gpu, &format!("model.images[{at}]"), &all[*at])?;
-    }
+    let texels_of = |at: &usize| {
+        let path = format!("model.images[{at}]");
+        let image = all[*at].texels().map_err(|error| InputError { path: path.clone(), ..error })?;
+        check_image(gpu, &path, image).map(|()| image)
+    };
+    let found = images.iter().map(texels_of).collect::<Result<Vec<_>, _>>()?;
     let flat = RgbaImage::from_pixel(1, 1, image::Rgba(texels.flat()));
     let images: Vec<&RgbaImage> = match images {
         [] => vec![&flat],
-        images => images.iter().map(|image| &all[*image]).collect(),
+        _ => found,
     };
     let limits = gpu.device().limits();
     if images.len() > limits.max_texture_array_layers as usize {

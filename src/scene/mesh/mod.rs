@@ -47,7 +47,11 @@ pub fn at_rest_merged(model: &Model) -> Result<(Merged, BoundingSphere), InputEr
 /// The merged meshes of a model with clips.
 pub fn moving_merged(model: &Model) -> Result<Merged, InputError> {
     check(model)?;
-    merged(model, OBJECT_LEVELS as usize)
+    let mut merged = merged(model, OBJECT_LEVELS as usize)?;
+    // The merged vertices move like those of the model.
+    let motion = model.motion.clone().filter(|motion| motion.fit(model));
+    merged.model.motion = motion.map(|motion| motion.with_model(&merged.model));
+    Ok(merged)
 }
 
 /// Uploads meshes whose vertices are the same for all instances. A mesh that exceeds a binding of the device is split
@@ -115,7 +119,12 @@ fn check(model: &Model) -> Result<(), InputError> {
     Ok(())
 }
 
-/// The error of each level of detail in model units, ascending. The first is 0, for the full mesh.
+/// The error of the finest level in model units.
+pub(super) fn finest_error(merged: &Merged) -> f32 {
+    merged.model.meshes.iter().map(|mesh| mesh.error).fold(0.0, f32::max)
+}
+
+/// The error of each level of detail in model units, ascending. The first is 0: views always allow the full mesh.
 pub(super) fn errors(merged: &Merged) -> Vec<f32> {
     std::iter::once(0.0).chain(merged.errors.iter().copied()).collect()
 }

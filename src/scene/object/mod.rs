@@ -5,10 +5,11 @@ mod frame;
 mod morph;
 mod slots;
 
-use glam::Vec3;
+use glam::{IVec3, Vec3};
 
 use crate::asset::Model;
 use crate::gpu::{Gpu, PendingUploads};
+use crate::lod::LodCamera;
 use crate::lod::criterion::Criterion;
 use crate::scene::character::Character;
 use crate::scene::chunk::Chunk;
@@ -25,6 +26,7 @@ use crate::scene::options::CharacterOptions;
 use crate::scene::quality::ErrorBudget;
 use crate::scene::relief::{self, Relief};
 use crate::scene::terrain::{self, TerrainSource};
+use crate::shared::lod::instance::{INSTANCE_ALIVE, SceneInstance};
 use crate::shared::lod::object::{LodObject, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::{Error, InputError};
@@ -42,6 +44,8 @@ pub(crate) struct Object {
     pub(super) sphere: BoundingSphere,
     /// The error of each level of detail in model units, ascending from 0.
     pub(super) errors: Vec<f32>,
+    /// The error of the finest level in model units: that of a package's quantization.
+    pub(super) finest_error: f32,
     pub(super) mesh_fraction: f32,
     /// How the object's levels of detail are chosen and change.
     pub(super) level_of_detail: LevelOfDetail,
@@ -90,6 +94,7 @@ impl Object {
             instances,
             sphere,
             errors,
+            finest_error: 0.0,
             mesh_fraction,
             level_of_detail: LevelOfDetail::default(),
             is_ranked: false,
@@ -136,9 +141,9 @@ impl Object {
         let looks = Looks::taken(&mut merged.model);
         looks.check_all()?;
         let drawn = whole(&instances, mesh::drawn(gpu, layouts, (&merged, &looks))?);
-        let errors = mesh::errors(&merged);
+        let (errors, finest_error) = (mesh::errors(&merged), mesh::finest_error(&merged));
         let object = Self::new(MeshAtRest(merged), (instances, sphere), (errors, 1.0), drawn);
-        Ok(Self { looks: Some(looks), ..object })
+        Ok(Self { looks: Some(looks), finest_error, ..object })
     }
 
     /// Creates a relief-mapped mesh.
@@ -180,11 +185,12 @@ impl Object {
         let mut merged = mesh::moving_merged(model)?;
         let looks = Looks::taken(&mut merged.model);
         looks.check_all()?;
+        let finest_error = mesh::finest_error(&merged);
         let character = Character::new(gpu, merged, options, (instances.capacity(), keeps_last))?;
         let drawn = (character.chunks_of_looks(gpu, layouts, &looks)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
         let object = Self::new(character, (instances, sphere), (errors, budget.mesh), drawn);
-        Ok(Self { looks: Some(looks), ..object })
+        Ok(Self { looks: Some(looks), finest_error, ..object })
     }
 
     /// The same object with a queue of uploads that still wait on the host.
@@ -282,6 +288,27 @@ impl Object {
     /// The chunk that draws an instance.
     pub(super) fn chunk_of(&self, index: u32) -> Option<&Chunk> {
         self.chunks.iter().find(|chunk| chunk.slots.contains(&(index as usize)))
+    }
+
+    /// Upper bound of the error in pixels of instances at full detail, where it exceeds what a camera allows; otherwise 0. Camera
+    /// positions are relative to the corner of `cell`.
+    pub(super) fn finest_pixels(&self, cameras: &[LodCamera], cell: IVec3) -> f32 {
+        let of_instance = |instance: &SceneInstance| {
+            let [x, y, z, radius] = instance.bounding_sphere;
+            let [along, up, across] = instance.axes();
+            let center = instance.position(cell) + x * along + y * up + z * across;
+            let scale = instance.largest_scale();
+            let radius = scale * radius;
+            let pixels = |camera: &LodCamera| {
+                let (own, allowed) = (scale * self.finest_error, camera.allows(center, radius));
+                let is_within = own <= self.mesh_fraction * allowed;
+                let displacement = own + (1.0 - self.mesh_fraction) * allowed;
+                if is_within { 0.0 } else { camera.pixels_of(displacement, center, radius) }
+            };
+            cameras.iter().map(pixels).fold(0.0, f32::max)
+        };
+        let all = self.instances.all().iter().filter(|instance| instance.flags & INSTANCE_ALIVE != 0);
+        all.map(of_instance).fold(0.0, f32::max)
     }
 
     /// The object as a character; `None` for other kinds.

@@ -66,7 +66,8 @@ pub struct ViewStatistics {
     pub frame: u64,
     /// Upper bound of the error of all drawn instances, in pixels. It is the limit of the view's
     /// [`Quality`](crate::scene::Quality), unless an object's levels of detail were coarser. An object's levels may be
-    /// coarser because of a budget, the object's own settings, or a lack of memory ([`Scene::lod_bias`]). It is infinite if the
+    /// coarser because of a budget, the object's own settings, or a lack of memory ([`Scene::lod_bias`]). It is also larger where a
+    /// package's quantization ([`Mesh::error`](crate::asset::Mesh::error)) exceeds the limit at full detail. It is infinite if the
     /// bound of any object is, and while endless terrain lacks detail.
     pub pixels: f32,
     /// The effect of the view's budget of triangles; `None` if the view has no budget.

@@ -22,6 +22,8 @@ struct About {
     lod_bias: Vec<f32>,
     /// Whether the view has a budget of triangles.
     has_budget: bool,
+    /// Error in pixels of each object at full detail, where it exceeds `pixels`; empty if none does.
+    finest: Vec<f32>,
 }
 
 /// Readback of the counts of one view.
@@ -51,14 +53,15 @@ impl ViewCounts {
         encoder: &mut wgpu::CommandEncoder,
         (draws, budget): (&wgpu::Buffer, &wgpu::Buffer),
         (frame, pixels, focal, has_budget): (u64, f32, Option<f32>, bool),
-        objects: &Slots<Object>,
+        (objects, finest): (&Slots<Object>, Vec<f32>),
     ) {
         self.arrive();
         // What is drawn coarser than the view asks for has no bound.
         let bias = |object: &Object| if object.kind.is_complete() { object.lod_bias } else { f32::INFINITY };
         let is_coarser = objects.iter().any(|object| bias(object) != 1.0);
         let lod_bias = objects.iter().filter(|_| is_coarser).map(bias).collect();
-        let about = About { frame, counted: self.counted.clone(), pixels, focal, lod_bias, has_budget };
+        let about =
+            About { frame, counted: self.counted.clone(), pixels, focal, lod_bias, has_budget, finest };
         self.ring.record(encoder, about, |encoder, to| {
             encoder.copy_buffer_to_buffer(draws, 0, to, 0, draws.size());
             encoder.copy_buffer_to_buffer(budget, 0, to, draws.size(), size_of::<BudgetState>() as u64);
@@ -83,6 +86,7 @@ impl ViewCounts {
                 let coarser = coarser * counted.bias * state.factor(counted.rank);
                 let factor = 1.0 + counted.mesh_fraction * (coarser - 1.0).max(0.0);
                 let bound = coarser_pixels(about.pixels, factor, about.focal);
+                let bound = about.finest.get(at).copied().unwrap_or(0.0).max(bound);
                 let pixels = if counted.is_bounded { bound } else { f32::INFINITY };
                 let levels = (0..counted.levels).map(|level| counted.level(level, &draws)).collect();
                 ObjectStatistics { object: counted.object, pixels, levels }

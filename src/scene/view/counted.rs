@@ -43,9 +43,22 @@ impl View {
         objects: &Slots<Object>,
     ) {
         let (focal, has_budget) = (self.shortest_focal(), self.has_budget());
+        let finest = self.finest_pixels(objects);
         let (Some(counts), Some(lists)) = (&mut self.counts, &self.lists) else { return };
         let buffers = (lists.arguments.raw(), lists.budget_state.raw());
-        counts.record(encoder, buffers, (frame, self.quality.pixels, focal, has_budget), objects);
+        counts.record(encoder, buffers, (frame, self.quality.pixels, focal, has_budget), (objects, finest));
+    }
+
+    /// For each object, an upper bound in pixels of the error of its instances at full detail, where this error is above what the
+    /// view allows; otherwise 0. The list is empty if all are 0. Instances that the view does not show count too.
+    fn finest_pixels(&self, objects: &Slots<Object>) -> Vec<f32> {
+        let Ok((_, view)) = self.select_view(0, false) else { return Vec::new() };
+        let of_object = |object: &Object| match object.finest_error > 0.0 && object.is_drawn() {
+            true => object.finest_pixels(view.cameras(), view.cell),
+            false => 0.0,
+        };
+        let all: Vec<f32> = objects.iter().map(of_object).collect();
+        if all.iter().any(|pixels| *pixels > 0.0) { all } else { Vec::new() }
     }
 
     /// The smallest focal length, in pixels, among the perspective cameras that decide the view's levels of detail.

@@ -15,16 +15,16 @@ impl<'a> Looks<'a> {
     /// Adds all materials of a model, and the images that they show. Returns the new index of each material.
     pub fn add(&mut self, model: &Model) -> Vec<usize> {
         let mut known: Vec<Option<usize>> = vec![None; model.images.len()];
-        let mut texture = |texture: Option<Texture>, images: &mut Vec<image::RgbaImage>| {
-            // No mesh shows a material with a missing image, because the model was checked.
-            let texture = texture.filter(|texture| texture.image < model.images.len())?;
-            let add = || index_of(images, model.images[texture.image].clone(), PartialEq::eq);
-            Some(Texture { image: *known[texture.image].get_or_insert_with(add), ..texture })
-        };
         let Model { materials, images, .. } = &mut *self.0;
         let add = |own: &Material| {
-            let (color, normal) = (texture(own.texture, images), texture(own.normal, images));
-            index_of(materials, Material { texture: color, normal, ..own.clone() }, PartialEq::eq)
+            let mut own = own.clone();
+            own.map_textures(|texture| {
+                // No mesh shows a material with a missing image, because the model was checked.
+                let image = model.images.get(texture.image)?;
+                let add = || index_of(images, image.clone(), PartialEq::eq);
+                Some(Texture { image: *known[texture.image].get_or_insert_with(add), ..texture })
+            });
+            index_of(materials, own, PartialEq::eq)
         };
         model.materials.iter().map(add).collect()
     }

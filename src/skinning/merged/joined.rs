@@ -74,8 +74,12 @@ pub(super) fn joined(
         targets: if is_morphed { targets(meshes, &starts) } else { Vec::new() },
         weights: if is_morphed { first.weights.clone() } else { Vec::new() },
         weight_keys: if is_morphed { first.weight_keys.clone() } else { Vec::new() },
+        error: meshes.iter().map(|mesh| mesh.error).fold(0.0, f32::max),
         levels: levels.map(|level| MeshLevel { indices: all(level), error: errors[level - 1] }).collect(),
         partners: partners(meshes, own, &starts),
+        // Scenes do not draw these.
+        second_uv: Vec::new(),
+        colors: Vec::new(),
     })
 }
 

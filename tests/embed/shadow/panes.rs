@@ -56,7 +56,7 @@ fn pierced() -> Model {
     });
     let texture = Some(Texture { image: 0, sampling: Sampling { mips: None, ..Sampling::default() } });
     let mut pierced = pane(Material { texture, ..plain([1.0; 4], Alpha::Mask(0.5)) });
-    pierced.images = vec![image];
+    pierced.images = vec![image.into()];
     pierced
 }
 

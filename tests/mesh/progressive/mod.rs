@@ -42,8 +42,7 @@ fn mesh(shape: &Shape, bones: u32) -> Mesh {
         targets: vec![MorphTarget::new(&(0..vertices).map(delta).collect::<Vec<_>>())],
         weights: vec![0.25],
         weight_keys: vec![(2, keys.expect("valid"))],
-        levels: Vec::new(),
-        partners: Vec::new(),
+        ..Mesh::default()
     }
 }
 

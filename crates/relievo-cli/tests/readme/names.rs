@@ -89,6 +89,7 @@ fn members() {
     let _ = Layer::Velocity; // Layer::Velocity
     let _ = Model::blend; // Model::blend
     let _ = Model::from_file; // Model::from_file
+    let _ = |mesh: relievo::asset::Mesh| mesh.error; // Mesh::error
     let _ = Model::to_glb; // Model::to_glb
     let _ = Model::to_obj; // Model::to_obj
     let _ = |options: SimplifyOptions| options.prune; // SimplifyOptions::prune

@@ -78,6 +78,7 @@ fn alone(model: &Model, mesh: &Mesh, portrait: &Portrait) -> Result<Model, Input
         *texture = Texture { image: 0, ..*texture };
     }
     material.normal = None;
+    material.pbr = Default::default();
     if material.alpha == Alpha::Blended {
         material.alpha = Alpha::Dithered;
     }
@@ -85,6 +86,7 @@ fn alone(model: &Model, mesh: &Mesh, portrait: &Portrait) -> Result<Model, Input
         skeleton: model.skeleton.clone(),
         skins: model.skins.clone(),
         clips: Vec::new(),
+        motion: None,
         meshes: vec![Mesh { material: Some(0), ..mesh.clone() }],
         skinned: 0,
         materials: vec![material],

@@ -42,6 +42,7 @@ pub fn creature() -> Result<Model, InputError> {
         skeleton,
         skins: vec![skin],
         clips: clips.into_iter().collect::<Result<_, _>>()?,
+        motion: None,
         meshes: vec![mesh],
         skinned: 1,
         materials: vec![],

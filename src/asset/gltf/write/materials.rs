@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::binary::{Binary, push};
 use crate::InputError;
 use crate::asset::images::png;
-use crate::asset::material::{Alpha, Filter, Sampling, Texture, Wrapping};
+use crate::asset::material::{Alpha, Filter, Pbr, PbrTexture, Sampling, Texture, UvSet, Wrapping};
 use crate::asset::{Material, Mesh, Model};
 
 /// The materials that meshes use, each written once, with their textures, samplers and images.
@@ -58,10 +58,28 @@ impl Materials {
             "name": material.name,
             "pbrMetallicRoughness": {
                 "baseColorFactor": material.color,
-                "metallicFactor": 0.0,
-                "roughnessFactor": 1.0,
+                "metallicFactor": material.pbr.metallic,
+                "roughnessFactor": material.pbr.roughness,
             },
         });
+        let Pbr { metallic_roughness, occlusion, occlusion_strength, emissive, emission, .. } = &material.pbr;
+        let mut info = |one: &PbrTexture| -> Result<Value, InputError> {
+            let index = self.texture(model, one.texture, binary)?;
+            Ok(json!({ "index": index, "texCoord": u32::from(one.uv == UvSet::Second) }))
+        };
+        if let Some(texture) = metallic_roughness {
+            written["pbrMetallicRoughness"]["metallicRoughnessTexture"] = info(texture)?;
+        }
+        if let Some(texture) = occlusion {
+            written["occlusionTexture"] = info(texture)?;
+            written["occlusionTexture"]["strength"] = json!(occlusion_strength);
+        }
+        if let Some(texture) = emission {
+            written["emissiveTexture"] = info(texture)?;
+        }
+        if *emissive != [0.0; 3] {
+            written["emissiveFactor"] = json!(emissive);
+        }
         if let Some(texture) = material.texture {
             let index = self.texture(model, texture, binary)?;
             written["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": index });

@@ -64,6 +64,12 @@ pub(super) fn primitive(
     let tangents: Vec<_> = mesh.tangents.iter().map(|tangent| flipped(*tangent)).collect();
     attributes["TANGENT"] = binary.floats(&tangents, false).into();
     attributes["TEXCOORD_0"] = binary.floats(&mesh.uv, false).into();
+    if !mesh.second_uv.is_empty() {
+        attributes["TEXCOORD_1"] = binary.floats(&mesh.second_uv, false).into();
+    }
+    if !mesh.colors.is_empty() {
+        attributes["COLOR_0"] = binary.floats(&mesh.colors, false).into();
+    }
     if is_skinned {
         add_influences(&mesh.influences, &mut attributes, binary);
     }

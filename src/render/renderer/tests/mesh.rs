@@ -28,7 +28,7 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
     let color = |x: u32, y: u32| {
         Rgba([(16 * x) as u8, (255 - 16 * y) as u8, ((x ^ y) << 4) as u8, (17 * (x + y) % 256) as u8])
     };
-    model.images.push(RgbaImage::from_fn(16, 16, color));
+    model.images.push(RgbaImage::from_fn(16, 16, color).into());
     model.materials.push(Material {
         name: "paint".to_owned(),
         color: [0.9, 1.0, 0.8, 0.9],
@@ -36,6 +36,7 @@ pub fn painted(alpha: Alpha, double_sided: bool) -> Model {
         normal: None,
         normal_scale: 1.0,
         alpha,
+        pbr: Default::default(),
     });
     model.meshes[0].material = Some(0);
     model.meshes[0].double_sided = double_sided;

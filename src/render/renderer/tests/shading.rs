@@ -29,9 +29,9 @@ const BUMP: [u8; 4] = [200, 40, 230, 255];
 fn model() -> Model {
     let mut model = creature().expect("valid");
     model.images = vec![
-        RgbaImage::from_pixel(4, 2, Rgba([200, 100, 50, 255])),
-        RgbaImage::from_pixel(2, 2, Rgba([10, 20, 30, 255])),
-        RgbaImage::from_pixel(3, 3, Rgba(BUMP)),
+        RgbaImage::from_pixel(4, 2, Rgba([200, 100, 50, 255])).into(),
+        RgbaImage::from_pixel(2, 2, Rgba([10, 20, 30, 255])).into(),
+        RgbaImage::from_pixel(3, 3, Rgba(BUMP)).into(),
     ];
     let texture = |image| Some(Texture { image, sampling: Sampling::default() });
     let plain = Material {
@@ -41,6 +41,7 @@ fn model() -> Model {
         normal: None,
         normal_scale: 1.0,
         alpha: Alpha::Opaque,
+        pbr: Default::default(),
     };
     let bumpy = Material { texture: texture(0), normal: texture(2), normal_scale: 0.5, ..plain.clone() };
     model.materials = vec![plain, bumpy];

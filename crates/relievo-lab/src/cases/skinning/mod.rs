@@ -78,8 +78,17 @@ pub(crate) fn random_model(case: u32, shape: Shape) -> Result<Model, InputError>
         ..Mesh::default()
     };
     mesh.validate(std::slice::from_ref(&skin))?;
-    let (clips, materials, images) = (vec![], vec![], vec![]);
-    Ok(Model { skeleton, skins: vec![skin], clips, meshes: vec![mesh], skinned: 1, materials, images })
+    let (clips, motion, materials, images) = (vec![], None, vec![], vec![]);
+    Ok(Model {
+        skeleton,
+        skins: vec![skin],
+        clips,
+        motion,
+        meshes: vec![mesh],
+        skinned: 1,
+        materials,
+        images,
+    })
 }
 
 /// Influences of the mesh on one more tier of the skeleton in odd cases, and none in even cases.

@@ -67,7 +67,7 @@ fn clothe(model: &mut Model) {
         _ => Rgba([150, 82, 52, 255]),
     };
     let (clay, image) = (model.materials.len(), model.images.len());
-    model.images.push(RgbaImage::from_fn(64, 64, square));
+    model.images.push(RgbaImage::from_fn(64, 64, square).into());
     let texture = Some(Texture { image, sampling: Sampling::default() });
     model.materials.push(Material { texture, ..Material::opaque("clay", [1.0; 4]) });
     for mesh in model.meshes.iter_mut().filter(|mesh| mesh.material.is_none()) {
