@@ -93,11 +93,14 @@ fn small() -> Vec<u8> {
 fn damaged_packages_are_refused_by_name() {
     let _alone = alone();
     let whole = small();
+    let levels = PackageHeader::read(&whole).expect("a header").0.levels;
     let mut numbers = Numbers(1);
     for _ in 0..scaled(50_000) {
         let mut bytes = whole.clone();
         numbers.mutate(&mut bytes);
-        if bytes == whole {
+        // What ends with a level is a model with this level.
+        let is_level = levels.iter().any(|level| level.chunk.end == bytes.len()) && whole.starts_with(&bytes);
+        if bytes == whole || is_level {
             continue;
         }
         let error = read(&bytes).expect_err("refused");
