@@ -1,8 +1,6 @@
 //! What the controls of the panel say, and what that means for a scene.
 
-use relievo::scene::{
-    Criterion, DistanceTo, LevelChoice, LevelOfDetail, Quality, SizeOf, Transition,
-};
+use relievo::scene::{Criterion, DistanceTo, LevelChoice, LevelOfDetail, Quality, SizeOf, Transition};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -82,7 +80,9 @@ impl Levels {
         let steps = |[first, last]: [f32; 2]| {
             let count = levels.saturating_sub(1).max(1);
             let ratio = last / first;
-            (0..count).map(|at| first * ratio.powf(at as f32 / count.saturating_sub(1).max(1) as f32)).collect()
+            (0..count)
+                .map(|at| first * ratio.powf(at as f32 / count.saturating_sub(1).max(1) as f32))
+                .collect()
         };
         let by = |criterion| LevelChoice::By(criterion);
         let choice = match self.by {
@@ -108,7 +108,9 @@ impl Levels {
     /// The field `lod` of an object of a scene file.
     pub fn json(&self, of: &LevelOfDetail) -> Value {
         let mut lod = match &of.choice {
-            LevelChoice::By(Criterion::Distance { from, .. }) => json!({ "criterion": "distance", "from": from }),
+            LevelChoice::By(Criterion::Distance { from, .. }) => {
+                json!({ "criterion": "distance", "from": from })
+            }
             LevelChoice::By(Criterion::Size { below, .. }) => json!({ "criterion": "size", "below": below }),
             LevelChoice::By(Criterion::Magnification { below }) => {
                 json!({ "criterion": "magnification", "below": below })

@@ -92,12 +92,13 @@ impl Document {
     /// # Errors
     /// [`InputError`] for text that is not JSON. Other mistakes are found when the scene is read.
     pub fn of_terrain(text: &str) -> Result<Self, InputError> {
-        let config: Value = serde_json::from_str(text)
-            .map_err(|error| InputError::new("terrain.config", "no JSON", format!("must be JSON: {error}")))?;
+        let config: Value = serde_json::from_str(text).map_err(|error| {
+            InputError::new("terrain.config", "no JSON", format!("must be JSON: {error}"))
+        })?;
         let is_coarse = config.get("coarseLevels").and_then(Value::as_u64).is_some_and(|levels| levels > 0);
         let needs_patches = |name: &&str| config.get(name).is_some_and(|value| value != "seamless");
-        let is_endless =
-            is_coarse && !["thermal", "hydraulic", "thermalAfter", "border"].iter().any(|name| needs_patches(name));
+        let is_endless = is_coarse
+            && !["thermal", "hydraulic", "thermalAfter", "border"].iter().any(|name| needs_patches(name));
         let terrain = if is_endless {
             json!({ "config": config, "endless": true })
         } else {
@@ -108,6 +109,7 @@ impl Document {
             "terrain": terrain,
             "light": { "direction": [-0.8, 0.5, 0.35], "color": [1.4, 1.3, 1.12], "ambient": 0.28 },
             "camera": { "at": [0, 1, 4], "look": [0, 0, 0] },
+            "quality": { "pixels": 2, "triangles": 400_000 },
             "background": [0.42, 0.58, 0.8],
         })))
     }
@@ -181,7 +183,10 @@ impl Document {
             own.insert("color".to_owned(), json!(light.color.to_array().map(f64::from)));
             own.insert("ambient".to_owned(), json!(f64::from(light.ambient)));
         });
-        self.root.insert("background".to_owned(), json!(background.map(|channel| f64::from(channel.clamp(0.0, 1.0)))));
+        self.root.insert(
+            "background".to_owned(),
+            json!(background.map(|channel| f64::from(channel.clamp(0.0, 1.0)))),
+        );
     }
 
     /// Sets how the levels of detail of an object are chosen, by its number among meshes and then characters.

@@ -30,7 +30,12 @@ impl Experiment {
     }
 
     /// Starts one with 100 models of 153 bones.
-    pub fn start(&mut self, gpu: &Gpu, options: DistanceSweepOptions, wake: impl Fn() + Send + Sync + 'static) {
+    pub fn start(
+        &mut self,
+        gpu: &Gpu,
+        options: DistanceSweepOptions,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) {
         let (to, news) = channel();
         (self.news, self.steps, self.result) = (Some(news), [0, 1], None);
         let gpu = gpu.clone();
@@ -65,7 +70,7 @@ impl Experiment {
             let _ = gpu.block_on(all);
         });
         #[cfg(target_arch = "wasm32")]
-        wasm_bindgen_futures::spawn_local(work(gpu));
+        wasm_bindgen_futures::spawn_local(async move { work(gpu).await });
     }
 
     /// Takes what the experiment told.

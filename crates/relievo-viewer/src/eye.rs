@@ -112,7 +112,9 @@ mod tests {
 
     #[test]
     fn an_eye_of_a_camera_gives_the_camera_back() {
-        for (at, look) in [([1.0, 2.0, 3.0], [4.0, 1.0, -7.0]), ([-3e6, 10.0, 5e5], [-3e6 + 20.0, 0.0, 5e5 - 4.0])] {
+        for (at, look) in
+            [([1.0, 2.0, 3.0], [4.0, 1.0, -7.0]), ([-3e6, 10.0, 5e5], [-3e6 + 20.0, 0.0, 5e5 - 4.0])]
+        {
             let given = camera(at, look);
             let distance = DVec3::from(at).distance(look.into());
             let eye = Eye::of(&given, distance);

@@ -170,7 +170,8 @@ impl Loader<'_> {
         let in_file = |source: InputError| Error::InputFile { path: name.clone(), source };
         // Models that are known have levels of detail, and are not read again.
         let built_ins = Prepared(&known);
-        let renamed = document.renamed(|name| known.contains_key(name).then(|| format!("builtin:{PREPARED}{name}")));
+        let renamed =
+            document.renamed(|name| known.contains_key(name).then(|| format!("builtin:{PREPARED}{name}")));
         let file = renamed.file().map_err(in_file)?;
         self.fetch_all(&file, &throttled).await.map_err(in_file)?;
         let loaded = self
@@ -194,7 +195,9 @@ impl Loader<'_> {
         (source, is_framed): (Arc<dyn Source>, bool),
     ) -> Result<Ready, Error> {
         for object in &mut world.objects {
-            if let Some(name) = object.name.strip_prefix("builtin:").and_then(|name| name.strip_prefix(PREPARED)) {
+            if let Some(name) =
+                object.name.strip_prefix("builtin:").and_then(|name| name.strip_prefix(PREPARED))
+            {
                 object.name = name.to_owned();
             }
             // A model that a mesh shows at rest has no clips, and one of several levels has several names.
@@ -222,7 +225,8 @@ impl Loader<'_> {
         self.fetch(name, source).await.map_err(|error| Error::file(name, error))?;
         let bytes = self.files.borrow()[name].clone();
         let text = || {
-            str::from_utf8(&bytes).map_err(|_| in_file(InputError::new("file", name.display(), "must be text")))
+            str::from_utf8(&bytes)
+                .map_err(|_| in_file(InputError::new("file", name.display(), "must be text")))
         };
         match Content::of(name, &bytes).map_err(in_file)? {
             Content::Scene => Ok((Document::from_json(text()?).map_err(in_file)?, true)),
@@ -258,7 +262,11 @@ impl Loader<'_> {
         let bytes = source.read(name).await?;
         let seconds = start.elapsed().as_secs_f64();
         let name = name.to_owned();
-        self.teller.tell(News::Arrived(Arrival { name: name.display().to_string(), bytes: bytes.len(), seconds }));
+        self.teller.tell(News::Arrived(Arrival {
+            name: name.display().to_string(),
+            bytes: bytes.len(),
+            seconds,
+        }));
         self.files.borrow_mut().insert(name, bytes);
         Ok(())
     }
@@ -378,9 +386,10 @@ fn over_land(document: &Document, world: &World) -> (DVec3, DVec3, f64) {
     // Above the highest of some places around, looking along the valley that lies lowest.
     let around = (0..16).map(|at| f64::from(at) * std::f64::consts::TAU / 16.0);
     let spots = around.map(|angle| (0.12 * spacing * DVec3::new(angle.sin(), 0.0, angle.cos()), angle));
-    let above = 0.012 * spacing + height(0.0, 0.0);
-    let lowest = spots.map(|(spot, _)| spot.with_y(height(spot.x, spot.z))).min_by(|a, b| a.y.total_cmp(&b.y));
+    let above = 0.025 * spacing + height(0.0, 0.0);
+    let lowest =
+        spots.map(|(spot, _)| spot.with_y(height(spot.x, spot.z))).min_by(|a, b| a.y.total_cmp(&b.y));
     let look = lowest.unwrap_or(DVec3::new(0.0, 0.0, -spacing));
-    let at = DVec3::new(0.0, above.max(look.y + 0.03 * spacing), 0.0);
+    let at = DVec3::new(0.0, above.max(look.y + 0.05 * spacing), 0.0);
     (at, look.with_y(0.5 * (at.y + look.y)), 1.5 * spacing)
 }

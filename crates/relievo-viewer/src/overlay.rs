@@ -102,7 +102,9 @@ impl Bones {
     pub fn choose(world: &mut World, instance: InstanceId) -> Result<Self, Error> {
         let object = world.objects.iter().find(|object| object.object == instance.object());
         let Some(model) = object.and_then(|object| object.character()) else {
-            return Err(InputError::new("instance", "no character", "must be an instance of a character").into());
+            return Err(
+                InputError::new("instance", "no character", "must be an instance of a character").into()
+            );
         };
         let parents: Vec<_> = model.skeleton.bones().iter().map(|bone| bone.parent).collect();
         let radii = bone_radii(parents.len(), &model.skins, &model.meshes);
@@ -138,15 +140,24 @@ impl Bones {
         let now = locals(watched);
         let moved = |(now, last): (&DAffine3, &DAffine3)| !now.abs_diff_eq(*last, 1e-5);
         let active = match &self.shown {
-            Some((last, _)) => now.iter().zip(&locals(last)).map(moved).collect(),
+            Some((last, _)) => {
+                let current = watched.bones.iter().map(|bone| bone.is_current);
+                now.iter()
+                    .zip(&locals(last))
+                    .map(moved)
+                    .zip(current)
+                    .map(|(moved, current)| moved && current)
+                    .collect()
+            }
             None => vec![true; now.len()],
         };
-        self.displacement = self.exact.iter().find(|(time, ..)| *time == watched.time).map(|(_, camera, exact)| {
-            let off = watched.bones.iter().zip(exact).zip(&self.radii).map(|((bone, exact), radius)| {
-                largest_displacement(camera, [&bone.world_from_bone(), exact], f64::from(*radius))
+        self.displacement =
+            self.exact.iter().find(|(time, ..)| *time == watched.time).map(|(_, camera, exact)| {
+                let off = watched.bones.iter().zip(exact).zip(&self.radii).map(|((bone, exact), radius)| {
+                    largest_displacement(camera, [&bone.world_from_bone(), exact], f64::from(*radius))
+                });
+                off.fold(0.0, f64::max)
             });
-            off.fold(0.0, f64::max)
-        });
         self.shown = Some((watched.clone(), active));
     }
 
@@ -198,7 +209,13 @@ mod tests {
 
     #[test]
     fn points_are_where_the_camera_shows_them() {
-        let camera = Camera::looking_at_world([0.0, 0.0, 10.0], [0.0; 3], 2.0 * 1.0_f32.atan(), [0.1, 99.0], [300, 200]);
+        let camera = Camera::looking_at_world(
+            [0.0, 0.0, 10.0],
+            [0.0; 3],
+            2.0 * 1.0_f32.atan(),
+            [0.1, 99.0],
+            [300, 200],
+        );
         let at = |x: f64, y: f64, z: f64| pixel(&camera, DVec3::new(x, y, z));
         // A picture's half height is as long as the distance.
         assert!(at(0.0, 0.0, 0.0).expect("seen").distance(DVec2::new(150.0, 100.0)) < 1e-3);

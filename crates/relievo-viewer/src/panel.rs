@@ -5,7 +5,9 @@ mod keys;
 mod plots;
 mod scene;
 
-use egui::{Align2, CentralPanel, Color32, CornerRadius, Frame, Panel, PointerButton, Rect, Sense, Stroke, Ui, vec2};
+use egui::{
+    Align2, CentralPanel, Color32, CornerRadius, Frame, Panel, PointerButton, Rect, Sense, Stroke, Ui, vec2,
+};
 
 use crate::controls::Drag;
 use crate::overlay::{self, Projected};
@@ -55,6 +57,15 @@ fn section<R>(ui: &mut Ui, title: &str, is_open: bool, content: impl FnOnce(&mut
     egui::CollapsingHeader::new(egui::RichText::new(title).strong())
         .default_open(is_open)
         .show(ui, |ui| content(ui));
+}
+
+/// A list that folds out, with a name for those who do not see it.
+fn list<R>(ui: &mut Ui, label: &str, selected: &str, content: impl FnOnce(&mut Ui) -> R) {
+    let response = egui::ComboBox::from_label(label).selected_text(selected).show_ui(ui, content).response;
+    response.widget_info(|| {
+        let info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, label);
+        egui::WidgetInfo { current_text_value: Some(selected.to_owned()), ..info }
+    });
 }
 
 /// The line below: time of a frame, triangles, bound of the error.
@@ -142,9 +153,10 @@ fn paint_picture(viewer: &Viewer, ui: &Ui, rect: Rect) {
     let painter = ui.painter_at(rect);
     if viewer.shown.is_none() {
         painter.rect_filled(rect, 0, ui.visuals().extreme_bg_color);
-        let text = viewer.step().map_or("Drop a file here, or choose a scene in the panel.".to_owned(), |step| {
-            format!("{step} …")
-        });
+        let text =
+            viewer.step().map_or("Drop a file here, or choose a scene in the panel.".to_owned(), |step| {
+                format!("{step} …")
+            });
         let font = egui::FontId::proportional(16.0);
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font, ui.visuals().text_color());
         return;
@@ -210,19 +222,21 @@ fn notice(viewer: &mut Viewer, ui: &mut Ui, rect: Rect) {
     let area = egui::Area::new(egui::Id::unique("notice")).fixed_pos(rect.left_top() + vec2(12.0, 12.0));
     let closed = area.show(ui.ctx(), |ui| {
         let frame = Frame::popup(ui.style()).stroke(Stroke::new(1.0, Color32::from_rgb(0xd6, 0x4f, 0x4f)));
-        frame.corner_radius(CornerRadius::same(4)).show(ui, |ui| {
-            ui.set_width(width);
-            ui.label(&notice);
-            ui.horizontal(|ui| {
-                let closed = ui.small_button("Close").clicked();
-                if ui.small_button("Copy").clicked() {
-                    viewer.request(crate::viewer::Request::Copy(notice));
-                }
-                closed
+        frame
+            .corner_radius(CornerRadius::same(4))
+            .show(ui, |ui| {
+                ui.set_width(width);
+                ui.label(&notice);
+                ui.horizontal(|ui| {
+                    let closed = ui.small_button("Close").clicked();
+                    if ui.small_button("Copy").clicked() {
+                        viewer.request(crate::viewer::Request::Copy(notice));
+                    }
+                    closed
+                })
+                .inner
             })
             .inner
-        })
-        .inner
     });
     if closed.inner {
         viewer.notice = None;
@@ -251,7 +265,7 @@ fn move_camera(viewer: &mut Viewer, ui: &Ui, response: &egui::Response, picture:
     } else if delta != egui::Vec2::ZERO {
         let is_main = response.dragged_by(PointerButton::Primary);
         match drag {
-            Drag::Sun if is_main => shown.turn_sun(part.map(|part| 2.0 * part as f32)),
+            Drag::Sun if is_main => shown.turn_sun([2.0 * part[0] as f32, -2.0 * part[1] as f32]),
             _ if !is_main || shift => {
                 shown.take_camera();
                 shown.eye.pan(part, tangent);
@@ -299,7 +313,8 @@ fn hovered_files(ui: &Ui) {
         return;
     }
     let rect = ui.ctx().content_rect();
-    let painter = ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));
+    let painter =
+        ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));
     painter.rect_filled(rect, 0, Color32::from_black_alpha(160));
     painter.rect_stroke(rect.shrink(12.0), 6, Stroke::new(2.0, ACCENT), egui::StrokeKind::Inside);
     let font = egui::FontId::proportional(20.0);

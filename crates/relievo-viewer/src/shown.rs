@@ -20,6 +20,9 @@ use crate::overlay;
 use crate::source::Source;
 use crate::stage::{Colors, Stage};
 
+/// Largest number of characters among which the nearest is chosen.
+const MOST_CHOICES: usize = 500;
+
 /// How the time of the scene goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
@@ -210,17 +213,26 @@ impl Shown {
         Ok(())
     }
 
-    /// Chooses the first character, if there is one.
+    /// Chooses the character that is nearest to the eye of those in a picture of this size, or any if none is.
     ///
     /// # Errors
     /// [`Error`] of the device.
-    pub fn choose_first(&mut self) -> Result<(), Error> {
+    pub fn choose_nearest(&mut self, size: [u32; 2]) -> Result<(), Error> {
+        let camera = self.camera(size);
         let world = &mut self.stage.world;
-        let first = world.objects.iter().find(|object| object.kind == WorldKind::Character);
-        let Some(instance) = first.and_then(|object| world.scene.instances(object.object).ok()?.first().copied())
-        else {
-            return Ok(());
+        let characters = world.objects.iter().filter(|object| object.kind == WorldKind::Character);
+        let instances = characters.filter_map(|object| world.scene.instances(object.object).ok()).flatten();
+        let far = |instance: relievo::scene::InstanceId| {
+            let place = world.scene.bounds(instance).map(|bounds| bounds.world()).ok()?;
+            let middle = 0.5 * (place[0] + place[1]);
+            let pixel = overlay::pixel(&camera, middle)?;
+            let [width, height] = size.map(f64::from);
+            let is_seen = (0.0..width).contains(&pixel.x) && (0.0..height).contains(&pixel.y);
+            is_seen.then(|| middle.distance(camera.world()))
         };
+        let rated =
+            instances.take(MOST_CHOICES).map(|instance| (far(instance).unwrap_or(f64::INFINITY), instance));
+        let Some((_, instance)) = rated.min_by(|(a, _), (b, _)| a.total_cmp(b)) else { return Ok(()) };
         self.chosen = Some(overlay::Bones::choose(world, instance)?);
         Ok(())
     }

@@ -48,7 +48,8 @@ impl Source for Memory {
         // What is dropped has no folders, but may name its textures by a path.
         let own = |name: &Path| self.0.get(name).cloned();
         let found = own(name).or_else(|| own(Path::new(name.file_name()?)));
-        let missing = || io::Error::new(io::ErrorKind::NotFound, "it was not dropped together with the others");
+        let missing =
+            || io::Error::new(io::ErrorKind::NotFound, "it was not dropped together with the others");
         Box::pin(async move { found.ok_or_else(missing) })
     }
 }
@@ -64,7 +65,9 @@ pub struct Site {
 #[cfg(target_arch = "wasm32")]
 impl Source for Site {
     fn read<'a>(&'a self, name: &'a Path) -> Reading<'a> {
-        Box::pin(async move { Ok(crate::web::fetched(&format!("{}{}", self.base, name.display())).await?.into()) })
+        Box::pin(
+            async move { Ok(crate::web::fetched(&format!("{}{}", self.base, name.display())).await?.into()) },
+        )
     }
 }
 

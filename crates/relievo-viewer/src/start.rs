@@ -140,7 +140,11 @@ pub fn point(name: &str, value: &str) -> Result<DVec3, InputError> {
     let parts: Result<Vec<f64>, _> = value.split(',').map(|part| part.trim().parse()).collect();
     match parts.as_deref() {
         Ok(&[x, y, z]) if [x, y, z].iter().all(|axis| axis.is_finite()) => Ok(DVec3::new(x, y, z)),
-        _ => Err(InputError::new(name, value, "must be three numbers with commas between them, such as 0,1.5,4")),
+        _ => Err(InputError::new(
+            name,
+            value,
+            "must be three numbers with commas between them, such as 0,1.5,4",
+        )),
     }
 }
 
@@ -150,7 +154,8 @@ mod tests {
 
     #[test]
     fn addresses_say_what_to_open() {
-        let start = Start::from_query("?scene=a%20b.glb&pixels=2.5&triangles=9&at=1,2,3&look=0,0,-1e3&utm=x&levels");
+        let start =
+            Start::from_query("?scene=a%20b.glb&pixels=2.5&triangles=9&at=1,2,3&look=0,0,-1e3&utm=x&levels");
         let camera = Some([DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.0, 0.0, -1000.0)]);
         let expected = Start {
             scene: Some("a b.glb".to_owned()),
@@ -167,7 +172,9 @@ mod tests {
             --look=0.0000,0.0000,-1000.0000 --levels --size 640x400 --picture picture.png";
         assert_eq!(command, expected);
         assert_eq!(Start::from_query(""), Ok(Start::default()));
-        for (query, path) in [("pixels=a", "pixels"), ("at=1,2", "at"), ("look=0,0,NaN", "look"), ("at=0,0,0", "at")] {
+        for (query, path) in
+            [("pixels=a", "pixels"), ("at=1,2", "at"), ("look=0,0,NaN", "look"), ("at=0,0,0", "at")]
+        {
             assert_eq!(Start::from_query(query).expect_err("refused").path, path, "{query}");
         }
     }

@@ -253,6 +253,11 @@ impl Viewer {
         &self.arrivals
     }
 
+    /// Bytes that had arrived at the first picture, and the seconds until then.
+    pub fn first_picture(&self) -> Option<(usize, f64)> {
+        self.first_picture
+    }
+
     /// Whether the scene is compared with full detail, and both are there.
     pub fn compares(&self) -> bool {
         self.compares && self.shown.as_ref().is_some_and(|shown| shown.full.is_some())
@@ -307,7 +312,9 @@ impl Viewer {
                 _ => 2,
             }
         };
-        let Some(first) = files.iter().map(|(name, _)| name.clone()).min_by_key(|name| rank(name)) else { return };
+        let Some(first) = files.iter().map(|(name, _)| name.clone()).min_by_key(|name| rank(name)) else {
+            return;
+        };
         let memory = files.into_iter().fold(Memory::default(), |all, (name, bytes)| all.with(name, bytes));
         self.open(&first, Arc::new(memory));
     }
@@ -348,7 +355,8 @@ impl Viewer {
         self.painter.pixels_per_point = full.pixels_per_point;
         self.painter.primitives = egui.tessellate(full.shapes, full.pixels_per_point);
         let mut textures = full.textures_delta;
-        let written = textures.set.drain().flat_map(|(id, deltas)| deltas.into_iter().map(move |delta| (id, delta)));
+        let written =
+            textures.set.drain().flat_map(|(id, deltas)| deltas.into_iter().map(move |delta| (id, delta)));
         self.painter.written.extend(written);
         self.painter.freed.extend(textures.free.drain());
         let repaint = full.viewport_output.values().map(|output| output.repaint_delay).min();
@@ -370,9 +378,9 @@ impl Viewer {
     }
 
     fn is_on_path(&self) -> bool {
-        self.shown.as_ref().is_some_and(|shown| {
-            shown.clock.plays && shown.clock.follows && shown.time() < shown.path_end()
-        })
+        self.shown
+            .as_ref()
+            .is_some_and(|shown| shown.clock.plays && shown.clock.follows && shown.time() < shown.path_end())
     }
 
     /// Whether the viewer draws nothing because nobody is there.
@@ -435,12 +443,6 @@ impl Viewer {
                 self.shown = Some(shown);
             }
         }
-        if self.settings.bones
-            && let Some(shown) = &mut self.shown
-            && shown.chosen.is_none()
-        {
-            shown.choose_first()?;
-        }
         Ok(())
     }
 
@@ -462,10 +464,10 @@ impl Viewer {
         if let Err(error) = shown.apply() {
             self.notice = Some(error.to_string());
         }
-        if self.settings.bones && shown.chosen.is_none() {
-            if let Err(error) = shown.choose_first() {
-                self.notice = Some(error.to_string());
-            }
+        if let (true, Some(Picture { size, .. }), None) = (self.settings.bones, self.picture, &shown.chosen)
+            && let Err(error) = shown.choose_nearest(size)
+        {
+            self.notice = Some(error.to_string());
         }
         if self.loading.is_some() || self.egui.input(|input| input.pointer.any_down()) {
             return;
@@ -523,7 +525,9 @@ impl Viewer {
     fn record_scene(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<bool, Error> {
         #[cfg(not(target_arch = "wasm32"))]
         let _ = self.gpu.device().poll(wgpu::PollType::Poll);
-        let (Some(shown), Some(Picture { size, .. })) = (&mut self.shown, self.picture) else { return Ok(false) };
+        let (Some(shown), Some(Picture { size, .. })) = (&mut self.shown, self.picture) else {
+            return Ok(false);
+        };
         if self.is_resting || self.in_flight.load(Ordering::Acquire) >= IN_FLIGHT {
             return Ok(false);
         }
@@ -540,7 +544,12 @@ impl Viewer {
         Ok(true)
     }
 
-    fn paint_panel(&mut self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, size: [u32; 2]) {
+    fn paint_panel(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        size: [u32; 2],
+    ) {
         let Painter { renderer, primitives, written, freed, pixels_per_point, .. } = &mut self.painter;
         let (device, queue) = (self.gpu.device(), self.gpu.queue());
         for (id, delta) in written.drain(..) {
@@ -549,7 +558,8 @@ impl Viewer {
         let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point: *pixels_per_point };
         renderer.update_buffers(device, queue, encoder, primitives, &screen);
         let background = self.egui.global_style().visuals.panel_fill;
-        let [r, g, b] = [background.r(), background.g(), background.b()].map(|channel| f64::from(channel) / 255.0);
+        let [r, g, b] =
+            [background.r(), background.g(), background.b()].map(|channel| f64::from(channel) / 255.0);
         let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("panel"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -584,7 +594,8 @@ impl Viewer {
     fn count(&mut self, record: f64) -> Result<(), Error> {
         let Some(shown) = &mut self.shown else { return Ok(()) };
         let now = Instant::now();
-        let frame = self.last_paint.replace(now).map_or(0.0, |last| 1e3 * now.duration_since(last).as_secs_f64());
+        let frame =
+            self.last_paint.replace(now).map_or(0.0, |last| 1e3 * now.duration_since(last).as_secs_f64());
         let device = f32::from_bits(self.device_time.load(Ordering::Acquire));
         shown.stage.view_mut().frame_took(device.max(record as f32))?;
         let bytes = self.arrivals.iter().map(|arrival| arrival.bytes).sum::<usize>();

@@ -138,11 +138,11 @@ struct Running {
 impl Running {
     fn new(program: &Program, events: &ActiveEventLoop) -> Result<Self, Error> {
         let [width, height] = program.options.size.unwrap_or([1280, 800]);
-        let attributes =
-            Window::default_attributes().with_title("relievo").with_inner_size(LogicalSize::new(width, height));
+        let attributes = Window::default_attributes()
+            .with_title("relievo")
+            .with_inner_size(LogicalSize::new(width, height));
         let window = Arc::new(events.create_window(attributes).map_err(|error| display(&error))?);
-        let surface =
-            program.instance.create_surface(window.clone()).map_err(|error| display(&error))?;
+        let surface = program.instance.create_surface(window.clone()).map_err(|error| display(&error))?;
         let wanted = program.options.adapter.clone().or_else(|| std::env::var("RELIEVO_ADAPTER").ok());
         let wanted = wanted.filter(|wanted| !wanted.is_empty());
         let (adapter, gpu) = pollster::block_on(opened(&program.instance, &surface, wanted.as_deref()))?;
@@ -269,7 +269,8 @@ async fn opened(
 ) -> Result<(wgpu::Adapter, Gpu), Error> {
     let adapter = match wanted {
         None => {
-            let suits = wgpu::RequestAdapterOptions { compatible_surface: Some(surface), ..Default::default() };
+            let suits =
+                wgpu::RequestAdapterOptions { compatible_surface: Some(surface), ..Default::default() };
             instance.request_adapter(&suits).await.map_err(|error| display(&error))?
         }
         Some(wanted) => {
@@ -289,7 +290,8 @@ async fn opened(
     let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
     let (own, default) = (adapter.limits(), wgpu::Limits::default());
     // Shaders count words in u32.
-    let binding = own.max_storage_buffer_binding_size.min(own.max_buffer_size).min(u64::from(u32::MAX) / 4 * 4);
+    let binding =
+        own.max_storage_buffer_binding_size.min(own.max_buffer_size).min(u64::from(u32::MAX) / 4 * 4);
     let descriptor = wgpu::DeviceDescriptor {
         label: Some("relievo viewer"),
         required_features: adapter.features() & wanted,
@@ -314,9 +316,9 @@ fn configuration(
     let config = surface.get_default_config(adapter, size.width.max(1), size.height.max(1));
     let config = config.ok_or_else(|| display(&"the adapter does not draw into windows"))?;
     let formats = surface.get_capabilities(adapter).formats;
-    let plain = formats.into_iter().find(|format| {
-        matches!(format, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Rgba8Unorm)
-    });
+    let plain = formats
+        .into_iter()
+        .find(|format| matches!(format, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Rgba8Unorm));
     Ok(wgpu::SurfaceConfiguration { format: plain.unwrap_or(config.format), ..config })
 }
 

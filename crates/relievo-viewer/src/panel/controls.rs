@@ -1,11 +1,11 @@
 //! The sections of controls: detail, bones, what is shown, light, and time.
 
-use egui::{ComboBox, Slider, Ui};
+use egui::{Slider, Ui};
 use relievo::ops::animation::priority::TERMS;
 use relievo::scene::Transition;
 use relievo::scene_file::WorldKind;
 
-use super::{grouped, section};
+use super::{grouped, list, section};
 use crate::controls::{Drag, GateBy, LevelsBy};
 use crate::shown::Shown;
 use crate::stage::Colors;
@@ -38,7 +38,8 @@ fn detail(viewer: &mut Viewer, ui: &mut Ui) {
     limit(ui, "milliseconds", &mut quality.has_milliseconds, |ui| {
         ui.add(Slider::new(&mut quality.milliseconds, 1.0..=200.0).logarithmic(true).max_decimals(1))
     });
-    ui.checkbox(compares, "full detail beside it").on_hover_text("Full detail to the left of a line that can be dragged (C)");
+    ui.checkbox(compares, "full detail beside it")
+        .on_hover_text("Full detail to the left of a line that can be dragged (C)");
     ui.horizontal(|ui| {
         ui.label("colours");
         ui.selectable_value(&mut settings.colors, Colors::Shaded, "shaded");
@@ -92,7 +93,7 @@ fn levels(shown: &mut Shown, ui: &mut Ui) {
         LevelsBy::Scene | LevelsBy::Error => {}
     }
     let name = levels.transition.map_or("as the scene says", |at| Transition::NAMES[at].0);
-    ComboBox::from_label("transition").selected_text(name).show_ui(ui, |ui| {
+    list(ui, "transition", name, |ui| {
         ui.selectable_value(&mut levels.transition, None, "as the scene says");
         for (at, (name, _)) in Transition::NAMES.iter().enumerate() {
             ui.selectable_value(&mut levels.transition, Some(at), *name);
@@ -119,7 +120,8 @@ fn costs(shown: &mut Shown, ui: &mut Ui) {
         for (object, name) in seen.objects.iter().zip(&names) {
             let drawn = object.levels.iter().enumerate().filter(|(_, level)| level.instances > 0);
             for (level, of) in drawn {
-                let short: String = name.chars().rev().take(16).collect::<Vec<_>>().into_iter().rev().collect();
+                let short: String =
+                    name.chars().rev().take(16).collect::<Vec<_>>().into_iter().rev().collect();
                 ui.label(format!("{short}: {level}"));
                 ui.label(of.instances.to_string());
                 ui.label(grouped(of.triangles));
@@ -132,7 +134,7 @@ fn costs(shown: &mut Shown, ui: &mut Ui) {
 /// A choice of one of several values.
 fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, all: &[(T, &str)], value: &mut T) {
     let name = all.iter().find(|(other, _)| other == value).map_or("", |(_, name)| name);
-    ComboBox::from_label(label).selected_text(name).show_ui(ui, |ui| {
+    list(ui, label, name, |ui| {
         for (other, name) in all {
             ui.selectable_value(value, *other, *name);
         }
@@ -162,7 +164,12 @@ fn bones(viewer: &mut Viewer, ui: &mut Ui) {
         GateBy::Scene | GateBy::Bounded | GateBy::Off => {}
     }
     if bones.gate == GateBy::SkipPeriod {
-        ui.add(Slider::new(&mut bones.period, 0.02..=10.0).logarithmic(true).max_decimals(2).text("period in seconds"));
+        ui.add(
+            Slider::new(&mut bones.period, 0.02..=10.0)
+                .logarithmic(true)
+                .max_decimals(2)
+                .text("period in seconds"),
+        );
         ui.checkbox(&mut bones.analyzed, "weights from each clip");
         ui.add_enabled_ui(!bones.analyzed, |ui| {
             for (weight, term) in bones.weights.iter_mut().zip(TERMS) {
@@ -170,8 +177,9 @@ fn bones(viewer: &mut Viewer, ui: &mut Ui) {
             }
         });
     }
-    ui.checkbox(&mut settings.bones, "show the bones of a character")
-        .on_hover_text("Bright bones were sampled in the last frame. Click on another character to choose it (B)");
+    ui.checkbox(&mut settings.bones, "show the bones of a character").on_hover_text(
+        "Bright bones were sampled in the last frame. Click on another character to choose it (B)",
+    );
     if let Some(chosen) = shown.chosen.as_ref().filter(|_| settings.bones) {
         let [all, active] = chosen.counts();
         ui.label(format!("{active} of {all} bones sampled in the last frame"));
@@ -240,8 +248,10 @@ fn time(viewer: &mut Viewer, ui: &mut Ui) {
 fn light(viewer: &mut Viewer, ui: &mut Ui) {
     let Viewer { shown: Some(shown), .. } = viewer else { return };
     let direction = shown.light.direction.normalize_or(glam::Vec3::Y);
-    let (mut around, mut above) = (direction.x.atan2(direction.z).to_degrees(), direction.y.asin().to_degrees());
-    let turned = ui.add(Slider::new(&mut around, -180.0..=180.0).suffix("°").max_decimals(0).text("sun, direction"));
+    let (mut around, mut above) =
+        (direction.x.atan2(direction.z).to_degrees(), direction.y.asin().to_degrees());
+    let turned =
+        ui.add(Slider::new(&mut around, -180.0..=180.0).suffix("°").max_decimals(0).text("sun, direction"));
     let raised = ui.add(Slider::new(&mut above, 1.0..=89.0).suffix("°").max_decimals(0).text("sun, height"));
     if turned.changed() || raised.changed() {
         let (yaw, pitch) = (around.to_radians(), above.to_radians());

@@ -39,7 +39,8 @@ pub fn take(viewer: &mut Viewer, egui: &Context) {
     toggle(Key::P, &mut viewer.settings.panel);
     toggle(Key::C, &mut viewer.compares);
     toggle(Key::B, &mut viewer.settings.bones);
-    let is_asked = egui.input(|input| input.events.iter().any(|event| *event == egui::Event::Text("?".to_owned())));
+    let is_asked =
+        egui.input(|input| input.events.iter().any(|event| *event == egui::Event::Text("?".to_owned())));
     viewer.shows_keys ^= is_asked;
     if pressed(Key::Escape) {
         (viewer.shows_keys, viewer.notice) = (false, None);
@@ -65,7 +66,8 @@ pub fn take(viewer: &mut Viewer, egui: &Context) {
     if pressed(Key::CloseBracket) {
         *pixels = if *pixels < 0.05 { 0.05 } else { (*pixels * 1.5).min(64.0) };
     }
-    let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+    let digits =
+        [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
     for (place, key) in viewer.bookmarks.iter_mut().zip(digits) {
         // With Shift, a layout may have another letter on the key.
         let is_put = egui.input(|input| {

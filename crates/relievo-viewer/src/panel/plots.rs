@@ -31,7 +31,8 @@ fn frames(viewer: &Viewer, ui: &mut Ui) {
     ];
     plot(ui, "milliseconds a frame", &time);
     let stages = |at: usize| one(STAGES[at], &|sample| Some(sample.stages?[at]));
-    let stages: Vec<Series> = (0..STAGES.len()).map(stages).filter(|(_, points)| !points.is_empty()).collect();
+    let stages: Vec<Series> =
+        (0..STAGES.len()).map(stages).filter(|(_, points)| !points.is_empty()).collect();
     if !stages.is_empty() {
         plot(ui, "milliseconds by stage", &stages);
     }
@@ -119,7 +120,11 @@ fn experiment(viewer: &mut Viewer, ui: &mut Ui) {
             SWEEP_MODES.into_iter().map(of).collect()
         };
         let name = layout.layout.as_str();
-        sweep(ui, &format!("{name}: milliseconds of the bones' update"), &series(&|row| Some(row.update_milliseconds)));
+        sweep(
+            ui,
+            &format!("{name}: milliseconds of the bones' update"),
+            &series(&|row| Some(row.update_milliseconds)),
+        );
         if report.drawn_frames > 0 {
             sweep(ui, &format!("{name}: milliseconds of a frame"), &series(&|row| row.frame_milliseconds));
         }

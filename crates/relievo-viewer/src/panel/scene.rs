@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::{EXAMPLES, grouped, section};
+use super::{EXAMPLES, grouped, list, section};
 use crate::settings::Theme;
 use crate::viewer::{Request, Viewer};
 
@@ -65,9 +65,10 @@ fn open(viewer: &mut Viewer, ui: &mut Ui) {
             wanted = Some(viewer.address.trim().to_owned());
         }
     });
-    egui::ComboBox::from_id_salt("examples").selected_text("Examples and recent files").width(ui.available_width()).show_ui(
-        ui,
-        |ui| {
+    egui::ComboBox::from_id_salt("examples")
+        .selected_text("Examples and recent files")
+        .width(ui.available_width())
+        .show_ui(ui, |ui| {
             for (at, (_, _, title)) in EXAMPLES.iter().enumerate() {
                 if ui.selectable_label(false, *title).clicked() {
                     viewer.open_example(at);
@@ -79,8 +80,7 @@ fn open(viewer: &mut Viewer, ui: &mut Ui) {
                     wanted = Some(name.clone());
                 }
             }
-        },
-    );
+        });
     if let Some(name) = wanted {
         viewer.open_address(&name);
     }
@@ -110,7 +110,7 @@ fn save(viewer: &mut Viewer, ui: &mut Ui) {
 fn network(viewer: &mut Viewer, ui: &mut Ui) {
     let throttle = &mut viewer.settings.throttle;
     let named = THROTTLES.iter().find(|(rate, _)| rate == throttle).map_or("other", |(_, name)| name);
-    egui::ComboBox::from_label("throttle").selected_text(named).show_ui(ui, |ui| {
+    list(ui, "throttle", named, |ui| {
         for (rate, name) in THROTTLES {
             ui.selectable_value(throttle, rate, name);
         }
@@ -133,5 +133,9 @@ fn network(viewer: &mut Viewer, ui: &mut Ui) {
 /// The end of a long name.
 fn short(name: &str) -> String {
     let count = name.chars().count();
-    if count <= 24 { name.to_owned() } else { format!("…{}", name.chars().skip(count - 23).collect::<String>()) }
+    if count <= 24 {
+        name.to_owned()
+    } else {
+        format!("…{}", name.chars().skip(count - 23).collect::<String>())
+    }
 }

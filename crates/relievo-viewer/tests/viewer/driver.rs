@@ -1,11 +1,11 @@
 //! Drives the viewer without a window: events in, pixels and the tree of widgets out.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-use egui::accesskit::{Node, Role};
+use egui::accesskit::{Node, NodeId, Role};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, pos2, vec2};
 use image::RgbaImage;
 use relievo::gpu::Gpu;
@@ -19,9 +19,16 @@ pub fn gpu() -> Gpu {
     GPU.get_or_init(relievo_testing::gpu).clone()
 }
 
-/// A model of the repository's samples.
-pub fn sample(name: &str) -> PathBuf {
-    relievo_testing::root().join(name)
+/// The built-in creature as a package, which needs no simplification when it is opened.
+pub fn creature() -> Arc<[u8]> {
+    static PACKAGE: OnceLock<Arc<[u8]>> = OnceLock::new();
+    let made = || {
+        let mut model = relievo_samples::creature().expect("built in");
+        relievo::scene::add_levels(&mut model, &[0], 9).expect("levels");
+        let watch = &mut |_| std::ops::ControlFlow::Continue(());
+        relievo::ops::skinning::cook(&model.into(), watch).expect("cooked").expect("not broken off").into()
+    };
+    PACKAGE.get_or_init(made).clone()
 }
 
 /// A viewer and its user.
@@ -32,6 +39,8 @@ pub struct Driver {
     time: f64,
     events: Vec<Event>,
     nodes: HashMap<String, (Role, Rect)>,
+    /// The name of the widget that has the focus.
+    pub focused: Option<String>,
     target: Offscreen,
     pub requests: Vec<Request>,
     /// What the last frame said of the next one.
@@ -61,6 +70,7 @@ impl Driver {
             time: 1.0,
             events: Vec::new(),
             nodes: HashMap::new(),
+            focused: None,
             target: target(&gpu, pixels),
             requests: Vec::new(),
             wait: None,
@@ -82,7 +92,10 @@ impl Driver {
     pub fn frame_after(&mut self, seconds: f64) -> Result<(), relievo::Error> {
         self.time += seconds;
         let mut input = egui::RawInput {
-            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(self.size[0] as f32, self.size[1] as f32))),
+            screen_rect: Some(Rect::from_min_size(
+                Pos2::ZERO,
+                vec2(self.size[0] as f32, self.size[1] as f32),
+            )),
             time: Some(self.time),
             max_texture_side: Some(8192),
             events: std::mem::take(&mut self.events),
@@ -93,9 +106,12 @@ impl Driver {
         let output = self.viewer.frame(input);
         self.wait = output.wait;
         if let Some(tree) = output.platform.accesskit_update {
-            self.nodes = tree.nodes.iter().filter_map(|(_, node)| named(node)).collect();
+            let all: HashMap<_, _> = tree.nodes.iter().map(|(id, node)| (*id, node)).collect();
+            self.nodes = all.values().filter_map(|node| named(node, &all)).collect();
+            self.focused = all.get(&tree.focus).and_then(|node| named(node, &all)).map(|(name, _)| name);
         }
-        let view = self.target.color(0).expect("a colour").create_view(&wgpu::TextureViewDescriptor::default());
+        let view =
+            self.target.color(0).expect("a colour").create_view(&wgpu::TextureViewDescriptor::default());
         let painted = self.viewer.paint(&view, self.target.size());
         self.viewer.gpu().wait()?;
         self.requests.extend(self.viewer.requests());
@@ -116,7 +132,7 @@ impl Driver {
             std::thread::sleep(Duration::from_millis(5));
             self.frame();
         }
-        self.frames(20);
+        self.frames(8);
     }
 
     /// Opens a file, and waits until it is there.
@@ -134,10 +150,6 @@ impl Driver {
         let mut names: Vec<_> = self.nodes.keys().collect();
         names.sort();
         self.find(name).unwrap_or_else(|| panic!("no widget `{name}` among {names:?}"))
-    }
-
-    pub fn names(&self) -> Vec<String> {
-        self.nodes.keys().cloned().collect()
     }
 
     /// Moves the pointer, and draws a frame.
@@ -162,15 +174,15 @@ impl Driver {
         self.hover(at);
         self.press(at, PointerButton::Primary, true);
         self.press(at, PointerButton::Primary, false);
-        self.frames(12);
+        self.frames(5);
     }
 
     /// Drags the pointer.
     pub fn drag(&mut self, from: Pos2, to: Pos2, button: PointerButton) {
         self.hover(from);
         self.press(from, button, true);
-        for step in 1..=6 {
-            self.hover(from.lerp(to, step as f32 / 6.0));
+        for step in 1..=3 {
+            self.hover(from.lerp(to, step as f32 / 3.0));
         }
         self.press(to, button, false);
         self.frames(2);
@@ -179,9 +191,11 @@ impl Driver {
     /// Drags the handle of a slider to a fraction of its way.
     pub fn slide(&mut self, name: &str, part: f32) {
         let rect = self.rect(name);
-        let at = |part: f32| pos2(rect.left() + part * rect.width(), rect.center().y);
+        // A slider's number and name are to the right of its rail, whose ends keep half of the handle.
+        let (half, rail) = (4.0, 120.0);
+        let at = |part: f32| pos2(rect.left() + half + part * (rail - 2.0 * half), rect.center().y);
         self.drag(at(0.5), at(part), PointerButton::Primary);
-        self.frames(10);
+        self.frames(2);
     }
 
     /// Chooses an entry of a list that folds out.
@@ -201,7 +215,7 @@ impl Driver {
             self.frame();
         }
         self.events.push(Event::ModifiersChanged(Modifiers::NONE));
-        self.frames(8);
+        self.frames(3);
     }
 
     /// Holds a key for some frames.
@@ -228,7 +242,8 @@ impl Driver {
     /// The picture of the scene, cut out of the window.
     pub fn picture(&self) -> RgbaImage {
         let rect = self.rect("picture") * self.scale;
-        let [x, y, width, height] = [rect.left(), rect.top(), rect.width(), rect.height()].map(|edge| edge as u32);
+        let [x, y, width, height] =
+            [rect.left(), rect.top(), rect.width(), rect.height()].map(|edge| edge as u32);
         image::imageops::crop_imm(&self.window(), x, y, width, height).to_image()
     }
 
@@ -245,18 +260,19 @@ impl Driver {
 
     /// Triangles in view, some frames later.
     pub fn triangles(&mut self) -> f64 {
-        self.frames(10);
+        self.frames(7);
         self.viewer.history().last().expect("a frame").triangles
     }
 }
 
 /// The name of a widget, and what and where it is.
-fn named(node: &Node) -> Option<(String, (Role, Rect))> {
+fn named(node: &Node, all: &HashMap<NodeId, &Node>) -> Option<(String, (Role, Rect))> {
     let bounds = node.bounds()?;
-    let name = node.label().or(node.value())?.to_owned();
+    let by = node.labelled_by().first().and_then(|by| all.get(by)).and_then(|by| by.label().or(by.value()));
+    let name = by.or(node.label()).or(node.value())?.to_owned();
     let [low, high] = [pos2(bounds.x0 as f32, bounds.y0 as f32), pos2(bounds.x1 as f32, bounds.y1 as f32)];
     // The text beside a widget has its name, too.
-    let is_text = matches!(node.role(), Role::Label | Role::SpinButton);
+    let is_text = matches!(node.role(), Role::Label | Role::SpinButton | Role::TextRun);
     (!is_text).then(|| (name, (node.role(), Rect::from_min_max(low, high))))
 }
 

@@ -1,1 +1,15 @@
-fn _x(){}
+//! What the page calls.
+
+use wasm_bindgen::prelude::wasm_bindgen;
+
+/// Opens the viewer in the canvas of the page.
+#[wasm_bindgen(start)]
+pub fn start() {
+    relievo_viewer::web::start();
+}
+
+/// What the viewer shows, as JSON.
+#[wasm_bindgen]
+pub fn state() -> String {
+    relievo_viewer::web::state()
+}
