@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
-    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, EventMask, ImageFormat,
+    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, EventMask, ImageFormat, InputFocus,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
@@ -54,9 +54,21 @@ impl Screen {
     fn wait(&self, what: &str, holds: impl Fn(&Self) -> bool) {
         let start = Instant::now();
         while !holds(self) {
-            assert!(start.elapsed() < Duration::from_secs(120), "no {what}");
+            assert!(start.elapsed() < Duration::from_secs(60), "no {what}: see {}", self.saved());
             std::thread::sleep(Duration::from_millis(100));
         }
+    }
+
+    /// Saves the screen for whoever wants to know why a test fails.
+    fn saved(&self) -> String {
+        let [width, height] = [1000, 700];
+        let bytes = self.pixels([0, 0, width, height]);
+        let pixels = bytes.chunks(4).flat_map(|pixel| [pixel[2], pixel[1], pixel[0]]).collect();
+        let picture = image::RgbImage::from_raw(width.into(), height.into(), pixels).expect("whole");
+        let path = relievo_testing::root().join("target/image-reports/window.png");
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("writable");
+        picture.save(&path).expect("writable");
+        path.display().to_string()
     }
 
     fn key(&self, keysym: u32) {
@@ -126,6 +138,9 @@ fn the_window_shows_the_scene_and_obeys() {
     });
     let shaded = screen.pixels(part);
 
+    // Without a window manager, nobody gives a window the keys.
+    let window = screen.window().expect("the viewer's window");
+    screen.x.set_input_focus(InputFocus::PARENT, window, x11rb::CURRENT_TIME).expect("asked");
     screen.pointer(6, 0, [200, 300]);
     screen.key(u32::from(b'l'));
     screen.wait("colours by level", |screen| different(&screen.pixels(part), &shaded) > 500);
@@ -137,7 +152,6 @@ fn the_window_shows_the_scene_and_obeys() {
     screen.wait("turned scene", |screen| different(&screen.pixels(part), &levels) > 500);
 
     // A larger window has its panel elsewhere.
-    let window = screen.window().expect("the viewer's window");
     let corner = [900, 500, 60, 60];
     let outside = screen.pixels(corner);
     screen.x.configure_window(window, &ConfigureWindowAux::new().width(980).height(620)).expect("asked");

@@ -279,7 +279,7 @@ impl Shown {
             }
             world.scene.set_level_of_detail(object.object, &of)?;
         }
-        Ok(())
+        self.stage.prepare()
     }
 
     /// The scene file as the scene is now.

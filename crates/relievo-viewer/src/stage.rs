@@ -55,6 +55,19 @@ impl Stage {
         Ok(Self { world, view, shadow, shaded, levels, targets: [None, None] })
     }
 
+    /// Compiles what is missing after a change of transitions.
+    ///
+    /// # Errors
+    /// [`Error`] of the device.
+    pub fn prepare(&mut self) -> Result<(), Error> {
+        self.shaded.prepare(&self.world.scene)?;
+        self.levels.prepare(&self.world.scene)?;
+        match &mut self.shadow {
+            Some((shadow, _)) => shadow.prepare(&self.world.scene),
+            None => Ok(()),
+        }
+    }
+
     /// The device.
     pub fn gpu(&self) -> &Gpu {
         self.world.scene.gpu()

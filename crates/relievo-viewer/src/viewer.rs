@@ -253,6 +253,11 @@ impl Viewer {
         &self.arrivals
     }
 
+    /// Width and height of the picture in pixels, once a frame was laid out.
+    pub fn picture_size(&self) -> Option<[u32; 2]> {
+        Some(self.picture?.size)
+    }
+
     /// Bytes that had arrived at the first picture, and the seconds until then.
     pub fn first_picture(&self) -> Option<(usize, f64)> {
         self.first_picture

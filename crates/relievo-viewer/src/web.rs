@@ -308,6 +308,8 @@ impl Shown {
             "bytes": viewer.arrivals().iter().map(|arrival| arrival.bytes).sum::<usize>(),
             "first_picture": viewer.first_picture().map(|(_, seconds)| seconds),
             "rests": viewer.is_resting(),
+            "picture": viewer.picture_size(),
+            "frames": viewer.shown().map(|shown| shown.stage.world.scene.frames()),
             "panel": viewer.settings().panel,
             "pixels": viewer.shown().map(|shown| shown.quality.pixels),
         });
