@@ -378,7 +378,8 @@ impl Viewer {
         if is_input || self.last_input == 0.0 {
             self.last_input = now;
         }
-        self.is_resting = now - self.last_input > REST && !self.is_on_path();
+        let is_whole = self.shown.as_ref().is_none_or(|shown| shown.stage.ready() == 1.0);
+        self.is_resting = now - self.last_input > REST && !self.is_on_path() && is_whole;
         seconds
     }
 

@@ -11,6 +11,16 @@ use tiny_http::{Header, Request, Response, Server};
 /// The files of the page.
 const FILES: [&str; 4] = ["index.html", "viewer.js", "viewer_bg.wasm", "creature.rlv"];
 
+/// What browsers with WebGPU understand of WebAssembly, and what rustc and wasm-bindgen write.
+const FEATURES: [&str; 6] = [
+    "--enable-bulk-memory",
+    "--enable-multivalue",
+    "--enable-mutable-globals",
+    "--enable-nontrapping-float-to-int",
+    "--enable-reference-types",
+    "--enable-sign-ext",
+];
+
 /// The largest size of WebAssembly and JavaScript together, with brotli, in bytes.
 const LARGEST: usize = 1_500_000;
 
@@ -64,7 +74,7 @@ fn build(out: &Path) -> Result<(), String> {
 fn shrink(program: &Path) -> Result<(), String> {
     let smaller = program.with_extension("smaller");
     let mut command = Command::new("wasm-opt");
-    command.args(["-Oz", "--all-features", "-o"]).arg(&smaller).arg(program);
+    command.args(FEATURES).args(["-Oz", "-o"]).arg(&smaller).arg(program);
     match command.output() {
         Err(_) => println!("wasm-opt is not installed: the program stays as it is"),
         Ok(output) if output.status.success() => {
