@@ -1,7 +1,7 @@
 #!/bin/bash
 # Makes sure that there is what the build needs besides cargo, with `adapter` that a Vulkan adapter works, and with
 # `browser` that there is the Chromium that the tests compile shaders and draw a scene in, a display for windows without a
-# screen (Xvfb), and a Rust that compiles for browsers, with `wasm` that Rust and `wasm-opt`:
+# screen (Xvfb), and a Rust that compiles for browsers, with `wasm` that Rust alone:
 # installs Debian's packages as root, and otherwise says the one command to run. Does nothing, and needs no network, where
 # all is there.
 set -euo pipefail
@@ -55,8 +55,6 @@ if [ "$(uname -s)" = Linux ]; then
     [ "${1:-}" != browser ] || have_browser || missing+=(chromium)
     [ "${1:-}" != browser ] || command -v Xvfb >/dev/null || missing+=(xvfb)
     [[ "${1:-}" != @(browser|wasm) ]] || have_wasm || missing+=(rustc-web cargo-web rust-web-src lld-22)
-    # The page is smaller with it.
-    [ "${1:-}" != wasm ] || command -v wasm-opt >/dev/null || missing+=(binaryen)
 elif [[ "${1:-}" = @(browser|wasm) ]] && ! have_wasm; then
     echo "missing: Rust for browsers. Run: rustup target add wasm32-unknown-unknown" >&2
     exit 1

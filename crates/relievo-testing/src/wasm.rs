@@ -14,7 +14,12 @@ pub enum Toolchain {
     /// The suite's own cargo and rustc.
     Own,
     /// Debian's `rustc-web`, `cargo-web` and `rust-web-src` below a folder, and a linker for WebAssembly.
-    Debian { folder: PathBuf, linker: PathBuf },
+    Debian {
+        /// The folder of `cargo` and `rustc`.
+        folder: PathBuf,
+        /// The linker.
+        linker: PathBuf,
+    },
 }
 
 impl Toolchain {

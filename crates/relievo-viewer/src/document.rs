@@ -97,8 +97,8 @@ impl Document {
         })?;
         let is_coarse = config.get("coarseLevels").and_then(Value::as_u64).is_some_and(|levels| levels > 0);
         let needs_patches = |name: &&str| config.get(name).is_some_and(|value| value != "seamless");
-        let is_endless = is_coarse
-            && !["thermal", "hydraulic", "thermalAfter", "border"].iter().any(|name| needs_patches(name));
+        let is_endless =
+            is_coarse && !["thermal", "hydraulic", "thermalAfter", "border"].iter().any(needs_patches);
         let terrain = if is_endless {
             json!({ "config": config, "endless": true })
         } else {

@@ -10,7 +10,7 @@ use relievo_lab::measure::{DistanceSweepOptions, DistanceSweepReport, Subject, d
 enum News {
     /// Steps done, of all.
     Step([u64; 2]),
-    Done(Result<DistanceSweepReport, String>),
+    Done(Box<Result<DistanceSweepReport, String>>),
 }
 
 /// An experiment that runs, and the last one's result.
@@ -57,7 +57,7 @@ impl Experiment {
                 distance_sweep(&gpu, subject, &options, &clock, &listener).await
             };
             let result: Result<_, relievo::Error> = measured.await;
-            let _ = to.send(News::Done(result.map_err(|error| error.to_string())));
+            let _ = to.send(News::Done(Box::new(result.map_err(|error| error.to_string()))));
             wake();
         };
         #[cfg(not(target_arch = "wasm32"))]
@@ -84,12 +84,12 @@ impl Experiment {
             }
         };
         if is_over && !matches!(all.last(), Some(News::Done(_))) {
-            all.push(News::Done(Err("the experiment ended before its time".to_owned())));
+            all.push(News::Done(Box::new(Err("the experiment ended before its time".to_owned()))));
         }
         for news in all {
             match news {
                 News::Step(steps) => self.steps = steps,
-                News::Done(result) => (self.news, self.result) = (None, Some(result)),
+                News::Done(result) => (self.news, self.result) = (None, Some(*result)),
             }
         }
     }
