@@ -1,4 +1,6 @@
-//! What the page calls.
+//! What the page calls. Elsewhere than in a browser, there is nothing.
+
+#![cfg(target_arch = "wasm32")]
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
