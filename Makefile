@@ -1,4 +1,4 @@
-# make demo · make test · make bench · make bless · make lint
+# make demo · make test · make bench · make bless · make lint · make view · make web · make serve
 #
 # Each target sets up what it needs: see scripts/setup.sh.
 
@@ -8,8 +8,11 @@ export XDG_RUNTIME_DIR ?= /tmp
 CARGO ?= cargo
 ONLY ?=
 OUT ?= target/demo
+PAGE ?= target/page
+PORT ?= 8080
+SCENE ?= examples/scenes/ruins.json
 
-.PHONY: demo test bench bless lint setup adapter browser
+.PHONY: demo test test-page bench bless lint view web serve setup adapter browser wasm
 
 demo: adapter
 	$(CARGO) run --bin relievo -- demo --out $(OUT)
@@ -17,6 +20,22 @@ demo: adapter
 
 test: browser
 	$(CARGO) test
+
+# The viewer's page in Chromium. It compiles the page first, unless RELIEVO_PAGE is the folder that `make web` wrote.
+test-page: browser
+	$(CARGO) test --test page
+
+# The demo's scene in the viewer, with a window.
+view: adapter
+	$(CARGO) run --release --bin relievo -- view $(SCENE)
+
+# The page with the viewer, and the sizes of its files.
+web: wasm
+	$(CARGO) run --release -p relievo-testing --bin page -- $(PAGE)
+
+# The same, served on localhost.
+serve: wasm
+	$(CARGO) run --release -p relievo-testing --bin page -- $(PAGE) $(PORT)
 
 bench: setup
 	RELIEVO_COMMIT=$$(git rev-parse --short HEAD 2>/dev/null || echo unknown) $(CARGO) run --release --bin relievo -- bench $(if $(ONLY),--only $(ONLY)) --json target/bench/summary.json
@@ -37,6 +56,9 @@ setup:
 # Opens a device, which tells more than a driver's file.
 adapter:
 	@CARGO=$(CARGO) scripts/setup.sh adapter
+
+wasm: setup
+	@CARGO=$(CARGO) scripts/setup.sh wasm
 
 # After the adapter: two installations at once would wait for each other's lock, and fail.
 browser: adapter

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Makes sure that there is what the build needs besides cargo, with `adapter` that a Vulkan adapter works, and with
-# `browser` that there is the Chromium that the tests compile shaders and draw a scene in, and a Rust that compiles for it:
+# `browser` that there is the Chromium that the tests compile shaders and draw a scene in, a display for windows without a
+# screen (Xvfb), and a Rust that compiles for browsers, with `wasm` that Rust alone:
 # installs Debian's packages as root, and otherwise says the one command to run. Does nothing, and needs no network, where
 # all is there.
 set -euo pipefail
@@ -22,7 +23,7 @@ have_browser() {
     done
     return 1
 }
-# The suite's own Rust with the target, or Debian's Rust for browsers (crates/relievo-cli/tests/web/wasm.rs chooses in the same way).
+# The suite's own Rust with the target, or Debian's Rust for browsers (crates/relievo-testing/src/wasm.rs chooses in the same way).
 have_wasm() {
     [ -d "$(rustc --print sysroot 2>/dev/null)/lib/rustlib/wasm32-unknown-unknown" ] ||
         { [ -f /usr/lib/rustlib/src/rust/library/std/Cargo.toml ] && [ -x /usr/bin/cargo ] && [ -x /usr/bin/rustc ] &&
@@ -52,8 +53,9 @@ if [ "$(uname -s)" = Linux ]; then
     # FLIP, the image comparison of the tests, is C++.
     command -v c++ >/dev/null || missing+=(g++)
     [ "${1:-}" != browser ] || have_browser || missing+=(chromium)
-    [ "${1:-}" != browser ] || have_wasm || missing+=(rustc-web cargo-web rust-web-src lld-22)
-elif [ "${1:-}" = browser ] && ! have_wasm; then
+    [ "${1:-}" != browser ] || command -v Xvfb >/dev/null || missing+=(xvfb)
+    [[ "${1:-}" != @(browser|wasm) ]] || have_wasm || missing+=(rustc-web cargo-web rust-web-src lld-22)
+elif [[ "${1:-}" = @(browser|wasm) ]] && ! have_wasm; then
     echo "missing: Rust for browsers. Run: rustup target add wasm32-unknown-unknown" >&2
     exit 1
 fi

@@ -127,6 +127,14 @@ impl Offscreen {
         self.size
     }
 
+    /// The texture of a colour attachment, with one sample per pixel, for the caller's own passes. A shader may read it.
+    /// A colour format with `Srgb` in its name can also be viewed without the conversion. `None` if there is no such
+    /// attachment.
+    pub fn color(&self, index: usize) -> Option<&wgpu::Texture> {
+        let Attachment { drawn, resolved } = self.colors.get(index)?;
+        Some(resolved.as_ref().unwrap_or(drawn))
+    }
+
     /// Records a render pass that calls `draw`. The pass first clears colour to `background` (linear), other attachments to 0,
     /// and depth to the far value.
     ///
@@ -239,14 +247,13 @@ impl Offscreen {
         index: usize,
         format: wgpu::TextureFormat,
     ) -> Result<Vec<u8>, Error> {
-        let Some(Attachment { drawn, resolved }) = self.colors.get(index) else {
+        let Some(color) = self.color(index) else {
             let path = match self.colors.len() {
                 0 => "format.color".to_owned(),
                 _ => format!("format.color[{index}]"),
             };
             return Err(InputError::new(path, "none", "must be there to be read").into());
         };
-        let color = resolved.as_ref().unwrap_or(drawn);
         if color.format() != format {
             let bound = format!("must be {format:?} to be read like this");
             let value = format!("{:?}", color.format());
@@ -281,6 +288,9 @@ impl Offscreen {
 
 fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+    let read = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+    let plain = [format.remove_srgb_suffix()];
+    let is_viewed = samples == 1 && plain[0] != format;
     gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some("off screen"),
         size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -288,7 +298,7 @@ fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat, samples: u32)
         sample_count: samples,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: if samples == 1 { usage | wgpu::TextureUsages::COPY_SRC } else { usage },
-        view_formats: &[],
+        usage: if samples == 1 { usage | read } else { usage },
+        view_formats: if is_viewed { &plain } else { &[] },
     })
 }

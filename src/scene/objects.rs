@@ -388,8 +388,11 @@ impl Scene {
         let last = std::mem::replace(&mut entry.level_of_detail, level_of_detail.clone());
         entry.is_retuned = true;
         entry.mark_transition();
-        let codes = [&last, level_of_detail].map(|settings| settings.transition().code());
-        if codes[0] != codes[1] || last.transition.fades() != level_of_detail.transition.fades() {
+        // The layout says what is drawn and how it is counted.
+        let laid_out = |of: &LevelOfDetail| {
+            (of.transition().code(), of.transition.fades(), of.is_bounded(), of.largest_factor())
+        };
+        if laid_out(&last) != laid_out(level_of_detail) {
             self.layout = None;
         }
         self.update_ranks();

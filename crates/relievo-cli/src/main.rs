@@ -24,6 +24,7 @@ mod skin;
 mod sweep;
 mod terrain;
 mod verify;
+mod view;
 
 use std::error::Error as _;
 use std::io::Write as _;
@@ -52,6 +53,7 @@ enum Command {
     /// Lists the adapters, the driver and limits of the chosen one, and every pass.
     Info,
     Scene(Box<scene::Scene>),
+    View(view::View),
     Terrain(Box<terrain::Terrain>),
     Creases(creases::Creases),
     Relief(Box<relief::Relief>),
@@ -100,6 +102,7 @@ fn main() -> ExitCode {
     let outcome = match arguments.command {
         Command::Info => info::run(&context),
         Command::Scene(command) => command.run(&context),
+        Command::View(command) => command.run(&context),
         Command::Terrain(command) => command.run(&context),
         Command::Creases(command) => command.run(),
         Command::Relief(command) => command.run(&context),

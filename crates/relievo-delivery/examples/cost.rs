@@ -48,8 +48,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("| all | {first} | {near} | {all} |\n");
     let rates = measured(address, &catalog)?;
     println!("| request | per second |\n|---|---|");
-    rates.iter().for_each(|(name, rate, _)| println!("| {name} | {rate:.0} |"));
-    let bytes_a_second = rates[0].1 * rates[0].2;
+    rates.iter().for_each(|rate| println!("| {} | {:.0} |", rate.name, rate.a_second));
+    let bytes_a_second = rates[0].a_second * rates[0].bytes;
     let requests = ready.iter().map(|model| 2.0 + 0.5 * model.levels.len() as f64).sum::<f64>();
     println!("\nA client of all models fetches {near} bytes in about {requests:.0} requests.\n");
     println!(
@@ -58,7 +58,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let line = |name: &str, share: f64| {
         let bytes = share * CLIENTS * near as f64;
         let rate = bytes / (HOURS * 3600.0);
-        let servers = (rate / bytes_a_second).max(share * CLIENTS * requests / (HOURS * 3600.0) / rates[0].1);
+        let servers =
+            (rate / bytes_a_second).max(share * CLIENTS * requests / (HOURS * 3600.0) / rates[0].a_second);
         println!("| {name} | {:.0} GB | {:.0} Mbit/s | {:.2} |", bytes / 1e9, rate * 8.0 / 1e6, servers);
     };
     line("no cache between", 1.0);
@@ -72,12 +73,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Requests a second for ranges of packages, for meshes as JSON that are in memory, and for what has not changed. With each the mean number
-/// of bytes of an answer.
-fn measured(
-    address: SocketAddr,
-    catalog: &Catalog,
-) -> Result<Vec<(&'static str, f64, f64)>, Box<dyn std::error::Error>> {
+/// How often a kind of request is answered.
+struct Rate {
+    name: &'static str,
+    a_second: f64,
+    /// Mean bytes of an answer.
+    bytes: f64,
+}
+
+/// Rates of ranges of packages, of meshes as JSON that are in memory, and of what has not changed.
+fn measured(address: SocketAddr, catalog: &Catalog) -> Result<Vec<Rate>, Box<dyn std::error::Error>> {
     let (mut ranges, mut meshes, mut same) = (Vec::new(), Vec::new(), Vec::new());
     for model in catalog.models.iter().filter(|model| model.state == ModelState::Ready) {
         for pair in model.levels.windows(2).take(8) {
@@ -106,8 +111,8 @@ fn measured(
                 all.into_iter().map(|one| one.join().unwrap_or(Ok((0, 0)))).collect::<Result<Vec<_>, _>>()
             })?;
             let (count, bytes) = answers.into_iter().fold((0, 0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
-            let rate = count as f64 / MEASURED.as_secs_f64();
-            Ok((name, rate, bytes as f64 / (count as f64).max(1.0)))
+            let a_second = count as f64 / MEASURED.as_secs_f64();
+            Ok(Rate { name, a_second, bytes: bytes as f64 / (count as f64).max(1.0) })
         })
         .collect()
 }

@@ -87,7 +87,9 @@ fn result_of(
         let waited = server.recv_timeout(Duration::from_millis(100)).map_err(|error| error.to_string())?;
         let Some(mut request) = waited else { continue };
         let path = request.url().to_owned();
-        match (request.method(), path.as_str()) {
+        // A page's address may say what it shows.
+        let path = path.split('?').next().unwrap_or_default();
+        match (request.method(), path) {
             (Method::Post, "/result") => {
                 let result = body(&mut request)?;
                 answer(request, 204, "", &[]);

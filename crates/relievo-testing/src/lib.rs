@@ -2,6 +2,7 @@
 
 pub mod browser;
 pub mod shader;
+pub mod wasm;
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,6 @@
 //! A scene in the browser: its device is opened without blocking, and its picture equals the native one.
 
+use std::path::Path;
 use std::sync::OnceLock;
 use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
@@ -13,7 +14,7 @@ use serde_json::Value;
 
 use crate::harness::{Difference, Tolerance, browser, gpu};
 use crate::picture::{SIZE, World, mistakes};
-use crate::wasm;
+use relievo_testing::wasm::Program;
 
 /// The results of one page load, which all tests of this file examine.
 fn said() -> &'static Value {
@@ -21,7 +22,10 @@ fn said() -> &'static Value {
     SAID.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let start = Instant::now();
-        wasm::scene(folder.path()).expect("the scene compiles for browsers");
+        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("web");
+        let program =
+            Program { package: "relievo-web-scene", library: "scene", profile: "dev", target: &target };
+        program.build(folder.path()).expect("the scene compiles for browsers");
         let built = start.elapsed().as_secs_f32();
         let read = |name: &str| std::fs::read(folder.path().join(name)).expect("written");
         let (script, program) = (read("scene.js"), read("scene_bg.wasm"));

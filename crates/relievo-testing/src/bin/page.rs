@@ -1,0 +1,113 @@
+//! Builds the page with the viewer (`make web`), and serves it on localhost (`make serve`).
+//!
+//! `wasm-opt` is not used: that of Debian 12 breaks the tables that wasm-bindgen writes, and saves 1 % with brotli.
+//!
+//! `page OUT [PORT]`: OUT is the folder of the page. The sizes of its files are printed, as they are and with brotli.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use relievo_testing::wasm::Program;
+use tiny_http::{Header, Request, Response, Server};
+
+/// The files of the page.
+const FILES: [&str; 4] = ["index.html", "viewer.js", "viewer_bg.wasm", "creature.rlv"];
+
+/// The largest size of WebAssembly and JavaScript together, with brotli, in bytes.
+const LARGEST: usize = 1_500_000;
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1);
+    let out = PathBuf::from(arguments.next().unwrap_or_else(|| "target/page".to_owned()));
+    let done = build(&out).and_then(|()| match arguments.next() {
+        Some(port) => serve(&out, &port),
+        None => Ok(()),
+    });
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("page: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Builds the page into a folder.
+fn build(out: &Path) -> Result<(), String> {
+    let text = |error: std::io::Error| format!("{}: {error}", out.display());
+    std::fs::create_dir_all(out).map_err(text)?;
+    let target = out.join("build");
+    let program = Program {
+        package: "relievo-page",
+        library: "viewer",
+        profile: "web",
+        target: &std::path::absolute(&target).map_err(text)?,
+    };
+    program.build(out)?;
+    let page = relievo_testing::root().join("crates/relievo-viewer/web/index.html");
+    std::fs::copy(&page, out.join("index.html")).map_err(text)?;
+    std::fs::write(out.join("creature.rlv"), creature()?).map_err(text)?;
+    let mut program = 0;
+    for name in FILES {
+        let bytes = std::fs::read(out.join(name)).map_err(text)?;
+        let packed = packed(&bytes).map_err(text)?;
+        println!("{name}: {} bytes, {} with brotli", bytes.len(), packed.len());
+        if name.starts_with("viewer") {
+            program += packed.len();
+        }
+        std::fs::write(out.join(format!("{name}.br")), packed).map_err(text)?;
+    }
+    println!("WebAssembly and JavaScript: {program} bytes with brotli, of {LARGEST}");
+    if program > LARGEST { Err(format!("{program} bytes are more than {LARGEST}")) } else { Ok(()) }
+}
+
+/// The built-in creature as a package.
+fn creature() -> Result<Vec<u8>, String> {
+    let model = relievo_samples::creature().map_err(|error| error.to_string())?;
+    let watch = &mut |_| std::ops::ControlFlow::Continue(());
+    let package = relievo::ops::skinning::cook(&model.into(), watch).map_err(|error| error.to_string())?;
+    package.ok_or_else(|| "broken off".to_owned())
+}
+
+fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
+    let mut packed = Vec::new();
+    let options = brotli::enc::BrotliEncoderParams { quality: 11, lgwin: 24, ..Default::default() };
+    brotli::BrotliCompress(&mut &bytes[..], &mut packed, &options)?;
+    Ok(packed)
+}
+
+/// Serves the page on localhost until the program is ended.
+fn serve(out: &Path, port: &str) -> Result<(), String> {
+    let server = Server::http(format!("127.0.0.1:{port}")).map_err(|error| error.to_string())?;
+    println!("http://localhost:{port}/");
+    for request in server.incoming_requests() {
+        answer(out, request);
+    }
+    Ok(())
+}
+
+fn answer(out: &Path, request: Request) {
+    let url = request.url().to_owned();
+    let name = url.split('?').next().unwrap_or_default().trim_start_matches('/');
+    let name = if name.is_empty() { "index.html" } else { name };
+    let Some(name) = FILES.into_iter().find(|file| *file == name) else {
+        let _ = request.respond(Response::from_string("there is no such file").with_status_code(404));
+        return;
+    };
+    let takes =
+        |header: &Header| header.field.equiv("Accept-Encoding") && header.value.as_str().contains("br");
+    let is_packed = request.headers().iter().any(takes);
+    let path = out.join(if is_packed { format!("{name}.br") } else { name.to_owned() });
+    let Ok(bytes) = std::fs::read(path) else { return };
+    let kind = match name.rsplit('.').next() {
+        Some("html") => "text/html; charset=utf-8",
+        Some("js") => "text/javascript",
+        Some("wasm") => "application/wasm",
+        _ => "application/octet-stream",
+    };
+    let encoding = is_packed.then_some(("Content-Encoding", "br"));
+    let headers = [("Content-Type", kind)].into_iter().chain(encoding);
+    let headers = headers.filter_map(|(name, value)| Header::from_bytes(name, value).ok());
+    let response = headers.fold(Response::from_data(bytes), Response::with_header);
+    let _ = request.respond(response);
+}

@@ -1,0 +1,290 @@
+//! Drives the viewer without a window: events in, pixels and the tree of widgets out.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+use egui::accesskit::{Node, NodeId, Role};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, pos2, vec2};
+use image::RgbaImage;
+use relievo::gpu::Gpu;
+use relievo::render::{Offscreen, TargetFormat};
+use relievo::wgpu;
+use relievo_viewer::{Request, Settings, Viewer};
+
+/// The adapter of the suite, with a device that all tests share.
+pub fn gpu() -> Gpu {
+    static GPU: OnceLock<Gpu> = OnceLock::new();
+    GPU.get_or_init(relievo_testing::gpu).clone()
+}
+
+/// The built-in creature as a package, which needs no simplification when it is opened.
+pub fn creature() -> Arc<[u8]> {
+    static PACKAGE: OnceLock<Arc<[u8]>> = OnceLock::new();
+    let made = || {
+        let mut model = relievo_samples::creature().expect("built in");
+        relievo::scene::add_levels(&mut model, &[0], 9).expect("levels");
+        let watch = &mut |_| std::ops::ControlFlow::Continue(());
+        relievo::ops::skinning::cook(&model.into(), watch).expect("cooked").expect("not broken off").into()
+    };
+    PACKAGE.get_or_init(made).clone()
+}
+
+/// A viewer and its user.
+pub struct Driver {
+    pub viewer: Viewer,
+    size: [u32; 2],
+    scale: f32,
+    time: f64,
+    events: Vec<Event>,
+    nodes: HashMap<String, (Role, Rect)>,
+    /// The name of the widget that has the focus.
+    pub focused: Option<String>,
+    target: Offscreen,
+    pub requests: Vec<Request>,
+    /// What the last frame said of the next one.
+    pub wait: Option<Duration>,
+    dark: bool,
+}
+
+/// The settings of tests: everything at its default, and dark.
+pub fn settings() -> Settings {
+    Settings { theme: relievo_viewer::Theme::Dark, ..Settings::default() }
+}
+
+impl Driver {
+    /// A viewer in a window of so many points, with one pixel a point.
+    pub fn new(size: [u32; 2]) -> Self {
+        Self::with(gpu(), size, 1.0, settings())
+    }
+
+    pub fn with(gpu: Gpu, size: [u32; 2], scale: f32, settings: Settings) -> Self {
+        let pixels = size.map(|edge| (edge as f32 * scale) as u32);
+        let viewer = Viewer::new(gpu.clone(), FORMAT, settings);
+        viewer.egui().enable_accesskit();
+        Self {
+            viewer,
+            size,
+            scale,
+            time: 1.0,
+            events: Vec::new(),
+            nodes: HashMap::new(),
+            focused: None,
+            target: target(&gpu, pixels),
+            requests: Vec::new(),
+            wait: None,
+            dark: true,
+        }
+    }
+
+    /// Resizes the window.
+    pub fn resize(&mut self, size: [u32; 2], scale: f32) {
+        (self.size, self.scale) = (size, scale);
+        self.target = target(self.viewer.gpu(), size.map(|edge| (edge as f32 * scale) as u32));
+    }
+
+    /// Draws one frame, a sixtieth of a second after the last one.
+    pub fn frame(&mut self) {
+        self.frame_after(1.0 / 60.0).expect("painted");
+    }
+
+    pub fn frame_after(&mut self, seconds: f64) -> Result<(), relievo::Error> {
+        self.time += seconds;
+        let mut input = egui::RawInput {
+            screen_rect: Some(Rect::from_min_size(
+                Pos2::ZERO,
+                vec2(self.size[0] as f32, self.size[1] as f32),
+            )),
+            time: Some(self.time),
+            max_texture_side: Some(8192),
+            events: std::mem::take(&mut self.events),
+            system_theme: Some(if self.dark { egui::Theme::Dark } else { egui::Theme::Light }),
+            ..Default::default()
+        };
+        input.viewports.entry(egui::ViewportId::ROOT).or_default().native_pixels_per_point = Some(self.scale);
+        let output = self.viewer.frame(input);
+        self.wait = output.wait;
+        if let Some(tree) = output.platform.accesskit_update {
+            let all: HashMap<_, _> = tree.nodes.iter().map(|(id, node)| (*id, node)).collect();
+            self.nodes = all.values().filter_map(|node| named(node, &all)).collect();
+            self.focused = all.get(&tree.focus).and_then(|node| named(node, &all)).map(|(name, _)| name);
+        }
+        let view =
+            self.target.color(0).expect("a colour").create_view(&wgpu::TextureViewDescriptor::default());
+        let painted = self.viewer.paint(&view, self.target.size());
+        self.viewer.gpu().wait()?;
+        self.requests.extend(self.viewer.requests());
+        painted
+    }
+
+    /// Draws so many frames.
+    pub fn frames(&mut self, count: usize) {
+        (0..count).for_each(|_| self.frame());
+    }
+
+    /// Draws frames until nothing is loaded any more, and the panel stands still.
+    pub fn settle(&mut self) {
+        let start = Instant::now();
+        self.frame();
+        while self.viewer.step().is_some() {
+            assert!(start.elapsed() < Duration::from_secs(120), "{:?}", self.viewer.step());
+            std::thread::sleep(Duration::from_millis(5));
+            self.frame();
+        }
+        self.frames(8);
+    }
+
+    /// Opens a file, and waits until it is there.
+    pub fn open(&mut self, path: &Path) {
+        self.viewer.open_address(&path.to_string_lossy());
+        self.settle();
+    }
+
+    /// Where a widget is; its name may end in something that changes.
+    pub fn find(&self, name: &str) -> Option<Rect> {
+        self.nodes.get(name).map(|(_, rect)| *rect)
+    }
+
+    pub fn rect(&self, name: &str) -> Rect {
+        let mut names: Vec<_> = self.nodes.keys().collect();
+        names.sort();
+        self.find(name).unwrap_or_else(|| panic!("no widget `{name}` among {names:?}"))
+    }
+
+    /// Moves the pointer, and draws a frame.
+    pub fn hover(&mut self, at: Pos2) {
+        self.events.push(Event::PointerMoved(at));
+        self.frame();
+    }
+
+    pub fn press(&mut self, at: Pos2, button: PointerButton, pressed: bool) {
+        self.events.push(Event::PointerMoved(at));
+        self.events.push(Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE });
+        self.frame();
+    }
+
+    /// Clicks on a widget.
+    pub fn click(&mut self, name: &str) {
+        let at = self.rect(name).center();
+        self.click_at(at);
+    }
+
+    pub fn click_at(&mut self, at: Pos2) {
+        self.hover(at);
+        self.press(at, PointerButton::Primary, true);
+        self.press(at, PointerButton::Primary, false);
+        self.frames(5);
+    }
+
+    /// Drags the pointer.
+    pub fn drag(&mut self, from: Pos2, to: Pos2, button: PointerButton) {
+        self.hover(from);
+        self.press(from, button, true);
+        for step in 1..=3 {
+            self.hover(from.lerp(to, step as f32 / 3.0));
+        }
+        self.press(to, button, false);
+        self.frames(2);
+    }
+
+    /// Drags the handle of a slider to a fraction of its way.
+    pub fn slide(&mut self, name: &str, part: f32) {
+        let rect = self.rect(name);
+        // A slider's number and name are to the right of its rail, whose ends keep half of the handle.
+        let (half, rail) = (4.0, 120.0);
+        let at = |part: f32| pos2(rect.left() + half + part * (rail - 2.0 * half), rect.center().y);
+        self.drag(at(0.5), at(part), PointerButton::Primary);
+        self.frames(2);
+    }
+
+    /// Chooses an entry of a list that folds out.
+    pub fn choose(&mut self, list: &str, entry: &str) {
+        self.click(list);
+        self.click(entry);
+    }
+
+    pub fn key(&mut self, key: Key) {
+        self.key_with(key, Modifiers::NONE);
+    }
+
+    pub fn key_with(&mut self, key: Key, modifiers: Modifiers) {
+        for pressed in [true, false] {
+            self.events.push(Event::ModifiersChanged(modifiers));
+            self.events.push(Event::Key { key, physical_key: Some(key), pressed, repeat: false, modifiers });
+            self.frame();
+        }
+        self.events.push(Event::ModifiersChanged(Modifiers::NONE));
+        self.frames(3);
+    }
+
+    /// Holds a key for some frames.
+    pub fn hold(&mut self, key: Key, frames: usize) {
+        for pressed in [true, false] {
+            let modifiers = Modifiers::NONE;
+            self.events.push(Event::Key { key, physical_key: Some(key), pressed, repeat: false, modifiers });
+            self.frames(if pressed { frames } else { 2 });
+        }
+    }
+
+    pub fn event(&mut self, event: Event) {
+        self.events.push(event);
+    }
+
+    /// The whole window.
+    pub fn window(&self) -> RgbaImage {
+        let gpu = self.viewer.gpu();
+        let bytes = gpu.block_on(self.target.read_color(gpu, 0, FORMAT)).expect("read");
+        let [width, height] = self.target.size();
+        RgbaImage::from_raw(width, height, bytes).expect("whole")
+    }
+
+    /// The picture of the scene, cut out of the window.
+    pub fn picture(&self) -> RgbaImage {
+        let rect = self.rect("picture") * self.scale;
+        let [x, y, width, height] =
+            [rect.left(), rect.top(), rect.width(), rect.height()].map(|edge| edge as u32);
+        image::imageops::crop_imm(&self.window(), x, y, width, height).to_image()
+    }
+
+    /// Saves the window for whoever wants to look at it.
+    pub fn save(&self, name: &str) {
+        let folder = relievo_testing::root().join("target/viewer");
+        std::fs::create_dir_all(&folder).expect("writable");
+        self.window().save(folder.join(format!("{name}.png"))).expect("writable");
+    }
+
+    pub fn shown(&self) -> &relievo_viewer::Shown {
+        self.viewer.shown().expect("a scene is shown")
+    }
+
+    /// Triangles in view, some frames later.
+    pub fn triangles(&mut self) -> f64 {
+        self.frames(7);
+        self.viewer.history().last().expect("a frame").triangles
+    }
+}
+
+/// The name of a widget, and what and where it is.
+fn named(node: &Node, all: &HashMap<NodeId, &Node>) -> Option<(String, (Role, Rect))> {
+    let bounds = node.bounds()?;
+    let by = node.labelled_by().first().and_then(|by| all.get(by)).and_then(|by| by.label().or(by.value()));
+    let name = by.or(node.label()).or(node.value())?.to_owned();
+    let [low, high] = [pos2(bounds.x0 as f32, bounds.y0 as f32), pos2(bounds.x1 as f32, bounds.y1 as f32)];
+    // The text beside a widget has its name, too.
+    let is_text = matches!(node.role(), Role::Label | Role::SpinButton | Role::TextRun);
+    (!is_text).then(|| (name, (node.role(), Rect::from_min_max(low, high))))
+}
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+fn target(gpu: &Gpu, size: [u32; 2]) -> Offscreen {
+    Offscreen::with_format(gpu, size, TargetFormat::new(FORMAT)).expect("a target")
+}
+
+/// The number of pixels that differ by more than some levels.
+pub fn different(one: &RgbaImage, other: &RgbaImage) -> usize {
+    assert_eq!(one.dimensions(), other.dimensions());
+    let far = |a: &image::Rgba<u8>, b: &image::Rgba<u8>| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 6);
+    one.pixels().zip(other.pixels()).filter(|(a, b)| far(a, b)).count()
+}

@@ -1,0 +1,7 @@
+//! The viewer, driven without a window: every control is moved by pointer or keys, and its effect is asserted in pixels, counts or
+//! state.
+
+mod controls;
+mod driver;
+mod inputs;
+mod life;

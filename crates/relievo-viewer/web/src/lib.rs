@@ -1,0 +1,17 @@
+//! What the page calls. Elsewhere than in a browser, there is nothing.
+
+#![cfg(target_arch = "wasm32")]
+
+use wasm_bindgen::prelude::wasm_bindgen;
+
+/// Opens the viewer in the canvas of the page.
+#[wasm_bindgen(start)]
+pub fn start() {
+    relievo_viewer::web::start();
+}
+
+/// What the viewer shows, as JSON.
+#[wasm_bindgen]
+pub fn state() -> String {
+    relievo_viewer::web::state()
+}
