@@ -96,7 +96,7 @@ impl SceneFile {
     /// Reads the files that the scene names through `read`, and computes levels of detail.
     ///
     /// `read` gets paths relative to the scene file. Names with the prefix `builtin:` come from `built_ins`;
-    /// [`NoBuiltIns`](super::NoBuiltIns) has none. Levels are computed for all meshes and characters. For characters, they fit
+    /// [`NoBuiltIns`] has none. Levels are computed for all meshes and characters. For characters, they fit
     /// the clips that the characters play, at 15 poses a second and at most 48 poses per clip. A model that several objects show
     /// is read and simplified only once, for the clips of all these objects. A package (`.rlv`) keeps its own levels. Levels that
     /// an artist made are joined instead ([`join_levels`](crate::ops::skinning::join_levels)); their errors are measured in the

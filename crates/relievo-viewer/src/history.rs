@@ -17,7 +17,7 @@ pub struct Sample {
     pub record: f64,
     /// Milliseconds from the submission until the device was done; `None` while it is not known.
     pub device: Option<f64>,
-    /// Milliseconds of each of [`STAGES`] on the device; `None` without timestamps.
+    /// Milliseconds of each stage on the device; `None` without timestamps.
     pub stages: Option<[f64; 5]>,
     /// Triangles drawn.
     pub triangles: f64,
@@ -42,7 +42,7 @@ pub struct History {
 }
 
 impl History {
-    /// Adds a frame, and forgets the oldest one beyond [`FRAMES`].
+    /// Adds a frame, and forgets the oldest one beyond the number that is kept.
     pub fn add(&mut self, sample: Sample) {
         if self.frames.len() == FRAMES {
             self.frames.pop_front();

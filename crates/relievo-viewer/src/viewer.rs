@@ -202,7 +202,7 @@ impl Viewer {
         }
     }
 
-    /// Lets the viewer find files in another way than by [`locate`](crate::locate).
+    /// Lets the viewer find files in another way than by [`locate`].
     #[must_use]
     pub fn with_locate(self, locate: Locate) -> Self {
         Self { locate, ..self }

@@ -1,7 +1,7 @@
 //! A server of models, scenes and terrain, and the export of its files.
 //!
 //! [`Site::open`] prepares everything that a folder of models, scene files and terrain need. [`Server`] answers requests for it;
-//! [`export`] writes it as plain files for any web server. Models are made into packages once, and kept in a cache beside the
+//! [`export()`] writes it as plain files for any web server. Models are made into packages once, and kept in a cache beside the
 //! models, which any number of servers may share.
 
 mod compress;
