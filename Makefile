@@ -33,9 +33,10 @@ view: adapter
 web: wasm
 	$(CARGO) run --release -p relievo-testing --bin page -- $(PAGE)
 
-# The same, served on localhost.
+# The same, served on localhost beside the demo's scene, even if its files are larger than they should be.
 serve: wasm
-	$(CARGO) run --release -p relievo-testing --bin page -- $(PAGE) $(PORT)
+	-$(CARGO) run --release -p relievo-testing --bin page -- $(PAGE)
+	$(CARGO) run --release --bin relievo -- serve --page $(PAGE) --scene $(SCENE) --cache target/cache --listen 127.0.0.1:$(PORT)
 
 bench: setup
 	RELIEVO_COMMIT=$$(git rev-parse --short HEAD 2>/dev/null || echo unknown) $(CARGO) run --release --bin relievo -- bench $(if $(ONLY),--only $(ONLY)) --json target/bench/summary.json

@@ -4,6 +4,7 @@ use crate::asset::Model;
 use crate::scene::Scene;
 use crate::scene::handles::ObjectId;
 use crate::scene::instances;
+use crate::scene::mesh::MeshAtRest;
 use crate::scene::object::Object;
 use crate::scene::options::CharacterOptions;
 use crate::{Error, InputError};
@@ -37,7 +38,8 @@ impl Scene {
     /// ```
     pub fn set_model(&mut self, object: ObjectId, model: &Model) -> Result<(), Error> {
         let old = self.object_at(object)?;
-        InputError::check(old.kind.name() == "a mesh", "object", old.kind.name(), || "must be a mesh")?;
+        let is_mesh = old.kind.downcast::<MeshAtRest>().is_some();
+        InputError::check(is_mesh, "object", old.kind.name(), || "must be a mesh")?;
         let capacity = old.capacity();
         let next = self.mesh(model, capacity)?;
         self.object_mut(object)?.successor = Some(Box::new(next));

@@ -18,8 +18,4 @@ pub mod mesh_json;
 #[cfg(feature = "server")]
 pub mod server;
 
-/// SHA-256 of bytes, as 64 hexadecimal digits.
-pub fn sha256(bytes: &[u8]) -> String {
-    use sha2::Digest as _;
-    sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
-}
+pub use relievo::asset::package::sha256;

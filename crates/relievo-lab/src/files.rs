@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use relievo::Error;
-use sha2::{Digest as _, Sha256};
+pub use relievo::asset::package::sha256;
 
 /// Files of one folder, staged until all are written. Staged files that are never published are deleted.
 #[derive(Debug)]
@@ -166,11 +166,6 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let mut staged = Staged::new(folder)?;
     staged.write(name.to_string_lossy(), bytes)?;
     staged.publish()
-}
-
-/// The SHA-256 of bytes, in hexadecimal digits, as `sha256sum` prints it.
-pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Writes a value as indented JSON, as [`write_file`] writes bytes.

@@ -244,7 +244,7 @@ pub(super) fn most_tests(bytes: usize) -> usize {
 impl PackageChunk {
     /// A chunk that begins at `start`.
     pub(super) fn new(start: usize, bytes: &[u8]) -> Self {
-        Self { start, end: start + bytes.len(), sha256: sum(bytes) }
+        Self { start, end: start + bytes.len(), sha256: sha256(bytes) }
     }
 
     /// The bytes of the chunk in the file.
@@ -259,12 +259,13 @@ impl PackageChunk {
     pub fn check(&self, path: &str, bytes: &[u8]) -> Result<(), InputError> {
         let length = self.end - self.start;
         InputError::check_same(format!("{path}.len"), bytes.len(), length, "the length in the header")?;
-        let sum = sum(bytes);
+        let sum = sha256(bytes);
         let bound = || format!("must be {}, the SHA-256 in the header", self.sha256);
         InputError::check(sum == self.sha256, format!("{path}.sha256"), &sum, bound)
     }
 }
 
-fn sum(bytes: &[u8]) -> String {
+/// SHA-256 of bytes, as 64 hexadecimal digits, as in headers of packages.
+pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -32,9 +32,9 @@ use super::gltf::materials;
 use super::image_file::Image;
 use super::model::Model;
 use crate::InputError;
-use crate::hash::sha256;
+use crate::hash;
 use coder::{Reader, damaged};
-pub use header::{PackageChunk, PackageHeader, PackageLevel, VERSION};
+pub use header::{PackageChunk, PackageHeader, PackageLevel, VERSION, sha256};
 use mesh::{Contexts, LeveledMesh};
 use parts::Parts;
 pub(crate) use snap::{snapped, welded};
@@ -219,7 +219,7 @@ impl Package {
     pub fn hash(&self) -> Result<String, InputError> {
         let model = self.model()?;
         let words = model.meshes.iter().flat_map(|mesh| mesh.level_words(0, mesh.vertices() as u32));
-        Ok(sha256(&words.collect::<Vec<_>>()))
+        Ok(hash::sha256(&words.collect::<Vec<_>>()))
     }
 }
 

@@ -11,13 +11,14 @@ use web_sys::{
     AbortController, Headers, ReadableStreamDefaultReader, RequestInit, Response, WorkerGlobalScope,
 };
 
-use super::transport::{Answer, Head, Request, RequestId, Transport};
+use super::transport::{Answer, Head, Request, RequestId, Transport, of_running};
 
 /// Requests by the browser, which keeps connections and a cache of its own. Works in a page and in a worker.
 #[derive(Default)]
 pub struct BrowserTransport {
     next: u64,
-    running: BTreeMap<RequestId, AbortController>,
+    /// What ends each request; `None` for one that could not begin.
+    running: BTreeMap<RequestId, Option<AbortController>>,
     answers: Rc<RefCell<VecDeque<(RequestId, Answer)>>>,
 }
 
@@ -37,7 +38,7 @@ impl Transport for BrowserTransport {
         match AbortController::new() {
             Ok(controller) => {
                 let signal = controller.signal();
-                self.running.insert(id, controller);
+                self.running.insert(id, Some(controller));
                 spawn_local(async move {
                     let last = match carry_out(&request, &signal, &send).await {
                         Ok(()) => Answer::End,
@@ -46,30 +47,22 @@ impl Transport for BrowserTransport {
                     send(last);
                 });
             }
-            Err(why) => send(Answer::Failed(message(&why))),
+            Err(why) => {
+                self.running.insert(id, None);
+                send(Answer::Failed(message(&why)));
+            }
         }
         id
     }
 
     fn cancel(&mut self, request: RequestId) {
-        if let Some(controller) = self.running.remove(&request) {
+        if let Some(Some(controller)) = self.running.remove(&request) {
             controller.abort();
         }
     }
 
     fn poll(&mut self) -> Vec<(RequestId, Answer)> {
-        let all: Vec<_> = self.answers.borrow_mut().drain(..).collect();
-        let mut answers = Vec::new();
-        for (id, answer) in all {
-            if !self.running.contains_key(&id) {
-                continue;
-            }
-            if matches!(answer, Answer::End | Answer::Failed(_)) {
-                self.running.remove(&id);
-            }
-            answers.push((id, answer));
-        }
-        answers
+        of_running(&mut self.running, self.answers.borrow_mut().drain(..))
     }
 }
 

@@ -25,9 +25,14 @@ const PAUSE: Duration = Duration::from_millis(250);
 /// # Errors
 /// [`FetchError`].
 pub fn get(url: &str, token: Option<&str>) -> Result<Vec<u8>, FetchError> {
+    get_by(&agent(), url, token)
+}
+
+/// [`get`] with connections that are kept.
+pub(super) fn get_by(agent: &ureq::Agent, url: &str, token: Option<&str>) -> Result<Vec<u8>, FetchError> {
     let request = Request { token: token.map(str::to_owned), ..Request::whole(url) };
     let network = |reason: String| FetchError::Network { url: url.to_owned(), reason };
-    let (head, body) = ask(&agent(), &request).map_err(network)?;
+    let (head, body) = ask(agent, &request).map_err(network)?;
     let mut bytes = Vec::new();
     body.into_reader().take(MOST + 1).read_to_end(&mut bytes).map_err(|error| network(error.to_string()))?;
     if head.status != 200 {
@@ -113,13 +118,13 @@ impl Download {
             }
             let images = || self.stream.missing_images().filter(|_| level == 0);
             let Some(range) = self.stream.missing(level).or_else(images) else { return Ok(()) };
-            let before = self.stream.complete().len();
+            let before = self.stream.checked();
             match self.attempt(&agent, range, watch) {
                 Ok(true) => {}
                 Ok(false) => return Ok(()),
                 Err(error @ FetchError::Status { status, .. }) if !is_passing(status) => return Err(error),
                 Err(error) => {
-                    failures = if self.stream.complete().len() > before { 0 } else { failures + 1 };
+                    failures = if self.stream.checked() > before { 0 } else { failures + 1 };
                     if failures >= ATTEMPTS {
                         return Err(error);
                     }

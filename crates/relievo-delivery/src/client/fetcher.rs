@@ -145,7 +145,8 @@ struct FileEntry {
 /// A request that runs.
 struct Running {
     model: usize,
-    /// Index of the next byte in the file.
+    /// Index of the first byte that was asked for, and of the next one, in the file.
+    start: u64,
     at: u64,
     end: u64,
     /// Bytes to leave out, of a server that knows no ranges.
@@ -340,10 +341,10 @@ impl<T: Transport> Fetcher<T> {
                     }
                 }
             }
-            // The server ended early: what came is kept, and the rest is asked for.
-            Answer::End if entry.stream.header().is_none() && running.at == 0 => {
+            Answer::End if running.at == running.start => {
                 Some((network("the answer is empty".to_owned()), None))
             }
+            // The server ended early: what came is kept, and the rest is asked for.
             Answer::End => {
                 entry.state = FetchState::Idle;
                 None
@@ -401,7 +402,7 @@ impl<T: Transport> Fetcher<T> {
             let id = self.transport.start(request);
             entry.state = FetchState::Fetching;
             let (at, end) = (range.start, range.end);
-            self.running.insert(id, Running { model, at, end, skip: 0 });
+            self.running.insert(id, Running { model, start: at, at, end, skip: 0 });
             self.traffic.requests += 1;
         }
     }

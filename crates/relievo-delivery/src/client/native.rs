@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::transport::{Answer, Head, Request, RequestId, Transport};
+use super::transport::{Answer, Head, Request, RequestId, Transport, of_running};
 
 /// Bytes that are read at once.
 const PIECE: usize = 16 << 10;
@@ -90,17 +90,7 @@ impl Transport for HttpTransport {
     }
 
     fn poll(&mut self) -> Vec<(RequestId, Answer)> {
-        let mut answers = Vec::new();
-        while let Ok((id, answer)) = self.answers.try_recv() {
-            if !self.running.contains_key(&id) {
-                continue;
-            }
-            if matches!(answer, Answer::End | Answer::Failed(_)) {
-                self.running.remove(&id);
-            }
-            answers.push((id, answer));
-        }
-        answers
+        of_running(&mut self.running, self.answers.try_iter())
     }
 }
 

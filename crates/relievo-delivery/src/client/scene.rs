@@ -191,8 +191,10 @@ impl<T: Transport> StreamedScene<T> {
 #[cfg(not(target_arch = "wasm32"))]
 pub fn get_scene(url: &str, token: Option<&str>, built_ins: &dyn BuiltIns) -> Result<LoadedScene, Error> {
     let in_file = |source: InputError| Error::InputFile { path: url.into(), source };
-    let text = String::from_utf8(super::get(url, token)?)
+    let agent = super::native::agent();
+    let get = |url: &str| super::download::get_by(&agent, url, token);
+    let text = String::from_utf8(get(url)?)
         .map_err(|error| in_file(InputError::new("scene", "bytes", format!("must be text: {error}"))))?;
-    let read = |path: &Path| super::get(&url_beside(url, path), token).map_err(io::Error::other);
+    let read = |path: &Path| get(&url_beside(url, path)).map_err(io::Error::other);
     SceneFile::from_json(&text).and_then(|file| file.load(&read, built_ins)).map_err(in_file)
 }

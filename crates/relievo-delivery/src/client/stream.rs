@@ -87,6 +87,12 @@ impl PackageStream {
         self.len() == 0
     }
 
+    /// Number of bytes of complete chunks.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn checked(&self) -> u64 {
+        self.front.checked + (self.images.checked - self.images.start)
+    }
+
     /// The beginning of the file up to the last chunk that is complete; images only behind the finest level.
     pub fn complete(&self) -> Vec<u8> {
         let own = |region: &Region| region.bytes[..(region.checked - region.start) as usize].to_vec();
@@ -213,15 +219,16 @@ impl PackageStream {
             (self.header, self.front.checked) = (Some(header), end as u64);
         }
         let Some(header) = &self.header else { return Ok(()) };
-        let levels = header.levels.iter().map(|level| &level.chunk).enumerate();
-        let levels = levels.map(|(at, chunk)| (format!("package.levels[{at}]"), chunk));
-        self.front.check(std::iter::once(("package.model".to_owned(), &header.model)).chain(levels))?;
+        let levels = header.levels.iter().map(|level| &level.chunk);
+        self.front.check(std::iter::once(&header.model).chain(levels), |at| match at.checked_sub(1) {
+            None => "package.model".to_owned(),
+            Some(level) => format!("package.levels[{level}]"),
+        })?;
         let behind = self.front.bytes.split_off(self.front.len_up_to(front_end(header)));
         if self.images.bytes.is_empty() {
             self.images.bytes = behind;
         }
-        let images = header.images.iter().enumerate();
-        self.images.check(images.map(|(at, chunk)| (format!("package.images[{at}]"), chunk)))?;
+        self.images.check(header.images.iter(), |at| format!("package.images[{at}]"))?;
         // What lies behind the end belongs to nothing.
         self.images.truncate(header.bytes() as u64);
         Ok(())
@@ -257,19 +264,20 @@ impl Region {
         self.truncate(self.checked);
     }
 
-    /// Checks the chunks that became complete, in their order.
+    /// Checks the chunks that became complete, in their order. `path` names a chunk by its number.
     fn check<'a>(
         &mut self,
-        chunks: impl Iterator<Item = (String, &'a PackageChunk)>,
+        chunks: impl Iterator<Item = &'a PackageChunk>,
+        path: impl Fn(usize) -> String,
     ) -> Result<(), InputError> {
-        for (path, chunk) in chunks {
+        for (at, chunk) in chunks.enumerate() {
             if chunk.end as u64 <= self.checked {
                 continue;
             }
             let first = chunk.start as u64 - self.start;
             let range = first as usize..first as usize + chunk.end - chunk.start;
             let Some(bytes) = self.bytes.get(range) else { break };
-            chunk.check(&path, bytes)?;
+            chunk.check(&path(at), bytes)?;
             self.checked = chunk.end as u64;
         }
         Ok(())

@@ -1,11 +1,24 @@
 //! Requests, and what carries them out.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::time::Duration;
 
 /// Identifies a request of a transport.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RequestId(pub u64);
+
+/// The answers to requests that run. Requests that end are removed from the list.
+pub(super) fn of_running<T>(
+    running: &mut BTreeMap<RequestId, T>,
+    all: impl IntoIterator<Item = (RequestId, Answer)>,
+) -> Vec<(RequestId, Answer)> {
+    let is_running = |(id, answer): &(RequestId, Answer)| match answer {
+        Answer::End | Answer::Failed(_) => running.remove(id).is_some(),
+        Answer::Head(_) | Answer::Bytes(_) => running.contains_key(id),
+    };
+    all.into_iter().filter(is_running).collect()
+}
 
 /// A `GET` request.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

@@ -208,7 +208,8 @@ impl Cache {
     }
 }
 
-fn object_name(hash: &str) -> String {
+/// The path of a package, in the cache and on the server.
+pub(super) fn object_name(hash: &str) -> String {
     format!("objects/{hash}.rlv")
 }
 

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::ServeError;
 use super::resource::{Compression, Lifetime, Resource};
-use super::site::{Files, read_file};
+use super::site::{Files, is_model, read_file};
 use crate::sha256;
 
 /// Fields of a scene file that hold names of files, or lists of such names.
@@ -88,11 +88,6 @@ impl SceneSource {
 /// The name of a built-in model; for other names, one that does not exist.
 pub(super) fn built_in(name: &str) -> &str {
     name.strip_prefix(BUILT_IN).unwrap_or_default()
-}
-
-fn is_model(name: &str) -> bool {
-    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
-    ["glb", "gltf", "obj", "rlv"].contains(&ending.as_str())
 }
 
 /// Whether a zone's texture is one of the built-in ones, whose names have no dot.

@@ -11,7 +11,7 @@ use relievo::asset::Model;
 use relievo::scene_file::BuiltIns;
 use tokio::runtime::Handle;
 
-use super::cooking::{Cache, CachedPackage, Source};
+use super::cooking::{Cache, CachedPackage, Source, object_name};
 use super::metrics::Metrics;
 use super::options::ServeOptions;
 use super::resource::{Compression, Content, Lifetime, Resource};
@@ -30,6 +30,12 @@ const CACHE: &str = ".relievo";
 
 /// Extensions of models, in lower case.
 const MODELS: [&str; 4] = ["glb", "gltf", "obj", "rlv"];
+
+/// Whether a file is a model, by its extension.
+pub(super) fn is_model(name: &str) -> bool {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+    MODELS.contains(&ending.to_ascii_lowercase().as_str())
+}
 
 /// Everything that a server has. Clones share it.
 #[derive(Clone)]
@@ -117,10 +123,7 @@ impl Site {
         let mut packages = BTreeMap::new();
         if let Some(models) = &models {
             for file in models.names().await? {
-                let Some((name, ending)) = file.rsplit_once('.') else { continue };
-                if !MODELS.contains(&ending.to_ascii_lowercase().as_str()) {
-                    continue;
-                }
+                let Some((name, _)) = file.rsplit_once('.').filter(|_| is_model(&file)) else { continue };
                 let package = Package { file: file.clone(), state: ModelState::Cooking, package: None };
                 if let Some(other) = packages.insert(name.to_owned(), package) {
                     let bound = format!("must have another name than {}, without extensions", other.file);
@@ -242,14 +245,14 @@ impl Inner {
             let watch = |fraction| watch(name, fraction);
             let source = Source { name, bytes: &bytes, read: &read, built_in: model.as_ref(), watch: &watch };
             let package = self.cache.cooked(&source).await?;
-            paths.insert(name.clone(), package_path(&package.hash));
+            paths.insert(name.clone(), object_name(&package.hash));
             self.add_package(&package);
         }
         Ok(scene.with_packages(&paths))
     }
 
     fn add_package(&self, package: &CachedPackage) {
-        self.insert(package_path(&package.hash), self.resource_of(package, Lifetime::Immutable));
+        self.insert(object_name(&package.hash), self.resource_of(package, Lifetime::Immutable));
     }
 
     fn insert(&self, path: String, resource: Resource) {
@@ -259,7 +262,7 @@ impl Inner {
     fn catalog(&self) -> Catalog {
         let packages = self.packages();
         let models = packages.iter().map(|(name, package)| match &package.package {
-            Some(found) => CatalogModel::ready(name, package_path(&found.hash), &found.header),
+            Some(found) => CatalogModel::ready(name, object_name(&found.hash), &found.header),
             None => CatalogModel::waiting(name, package.state.clone()),
         });
         let models = models.collect();
@@ -328,9 +331,13 @@ impl Inner {
         if !is_stored || resource.length > self.options.limits.memory / 16 {
             return Ok(resource.clone());
         }
-        let read = self.cache.package(&resource.hash);
-        let bytes = self.objects.try_get_with(resource.hash.clone(), read).await.map_err(shared)?;
+        let bytes = self.package(&resource.hash).await?;
         Ok(Resource { content: Content::Memory(bytes), ..resource.clone() })
+    }
+
+    /// A package's bytes, from memory if they were asked for before.
+    async fn package(&self, hash: &str) -> Result<Bytes, ServeError> {
+        self.objects.try_get_with(hash.to_owned(), self.cache.package(hash)).await.map_err(shared)
     }
 
     /// A mesh as JSON, or the difference between two levels. It is made once, and kept while it is asked for.
@@ -341,7 +348,7 @@ impl Inner {
         }
         let make = async {
             self.metrics.mesh_miss();
-            let bytes = self.cache.package(&key.package).await?;
+            let bytes = self.package(&key.package).await?;
             let made_of = key.clone();
             let made = tokio::task::spawn_blocking(move || mesh_of(&bytes, &made_of));
             Ok(Arc::new(made.await.map_err(|error| ServeError::io("mesh", std::io::Error::other(error)))??))
@@ -356,11 +363,6 @@ fn shared(error: Arc<ServeError>) -> ServeError {
         Ok(error) => error,
         Err(shared) => ServeError::io("cache", std::io::Error::other(shared.to_string())),
     }
-}
-
-/// Path of a package by the hash of its bytes.
-fn package_path(hash: &str) -> String {
-    format!("objects/{hash}.rlv")
 }
 
 fn mesh_of(package: &[u8], key: &MeshKey) -> Result<Resource, ServeError> {

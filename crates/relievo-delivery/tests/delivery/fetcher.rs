@@ -247,6 +247,28 @@ fn a_server_that_fails_is_asked_again_later_and_later() {
 }
 
 #[test]
+fn a_server_that_answers_without_a_byte_is_not_flooded() {
+    let mut memory = Memory::new(1 << 20);
+    memory.fault = Some(Box::new(|request, answer| match answer {
+        // The first request brings the header; then nothing comes any more.
+        Answer::Bytes(_) if request.range.as_ref().is_some_and(|range| range.start > 0) => vec![Answer::End],
+        answer => vec![answer],
+    }));
+    let mut fetcher = Fetcher::new(memory, FetcherOptions::default());
+    let model = fetcher.add("creature");
+    fetcher.want(&[want(model, 0.0, 1.0)]);
+    let mut now = Duration::ZERO;
+    for _ in 0..1000 {
+        now += STEP;
+        fetcher.update(now);
+    }
+    // 0.25, 0.5, 1, 2, 4 s: in ten seconds, hardly more than the first request and five.
+    let requests = fetcher.traffic().requests;
+    assert!((5..9).contains(&requests), "{requests} requests");
+    assert!(matches!(fetcher.state(model), FetchState::Waiting { .. }));
+}
+
+#[test]
 fn a_missing_file_fails_and_a_changed_one_begins_again() {
     let mut fetcher = Fetcher::new(Memory::new(2000), FetcherOptions::default());
     let (model, missing) = (fetcher.add("rock"), fetcher.add("none"));

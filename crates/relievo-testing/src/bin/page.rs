@@ -1,14 +1,13 @@
-//! Builds the page with the viewer (`make web`), and serves it on localhost (`make serve`).
+//! Builds the page with the viewer (`make web`).
 //!
 //! `wasm-opt` is not used: that of Debian 12 breaks the tables that wasm-bindgen writes, and saves 1 % with brotli.
 //!
-//! `page OUT [PORT]`: OUT is the folder of the page. The sizes of its files are printed, as they are and with brotli.
+//! `page OUT`: OUT is the folder of the page, beside which it is compiled (`OUT.build`). The sizes of its files are printed, as they are and with brotli.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use relievo_testing::wasm::Program;
-use tiny_http::{Header, Request, Response, Server};
 
 /// The files of the page.
 const FILES: [&str; 4] = ["index.html", "viewer.js", "viewer_bg.wasm", "creature.rlv"];
@@ -19,11 +18,7 @@ const LARGEST: usize = 1_500_000;
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let out = PathBuf::from(arguments.next().unwrap_or_else(|| "target/page".to_owned()));
-    let done = build(&out).and_then(|()| match arguments.next() {
-        Some(port) => serve(&out, &port),
-        None => Ok(()),
-    });
-    match done {
+    match build(&out) {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {
             eprintln!("page: {why}");
@@ -36,7 +31,7 @@ fn main() -> ExitCode {
 fn build(out: &Path) -> Result<(), String> {
     let text = |error: std::io::Error| format!("{}: {error}", out.display());
     std::fs::create_dir_all(out).map_err(text)?;
-    let target = out.join("build");
+    let target = out.with_extension("build");
     let program = Program {
         package: "relievo-page",
         library: "viewer",
@@ -55,7 +50,6 @@ fn build(out: &Path) -> Result<(), String> {
         if name.starts_with("viewer") {
             program += packed.len();
         }
-        std::fs::write(out.join(format!("{name}.br")), packed).map_err(text)?;
     }
     println!("WebAssembly and JavaScript: {program} bytes with brotli, of {LARGEST}");
     if program > LARGEST { Err(format!("{program} bytes are more than {LARGEST}")) } else { Ok(()) }
@@ -74,40 +68,4 @@ fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
     let options = brotli::enc::BrotliEncoderParams { quality: 11, lgwin: 24, ..Default::default() };
     brotli::BrotliCompress(&mut &bytes[..], &mut packed, &options)?;
     Ok(packed)
-}
-
-/// Serves the page on localhost until the program is ended.
-fn serve(out: &Path, port: &str) -> Result<(), String> {
-    let server = Server::http(format!("127.0.0.1:{port}")).map_err(|error| error.to_string())?;
-    println!("http://localhost:{port}/");
-    for request in server.incoming_requests() {
-        answer(out, request);
-    }
-    Ok(())
-}
-
-fn answer(out: &Path, request: Request) {
-    let url = request.url().to_owned();
-    let name = url.split('?').next().unwrap_or_default().trim_start_matches('/');
-    let name = if name.is_empty() { "index.html" } else { name };
-    let Some(name) = FILES.into_iter().find(|file| *file == name) else {
-        let _ = request.respond(Response::from_string("there is no such file").with_status_code(404));
-        return;
-    };
-    let takes =
-        |header: &Header| header.field.equiv("Accept-Encoding") && header.value.as_str().contains("br");
-    let is_packed = request.headers().iter().any(takes);
-    let path = out.join(if is_packed { format!("{name}.br") } else { name.to_owned() });
-    let Ok(bytes) = std::fs::read(path) else { return };
-    let kind = match name.rsplit('.').next() {
-        Some("html") => "text/html; charset=utf-8",
-        Some("js") => "text/javascript",
-        Some("wasm") => "application/wasm",
-        _ => "application/octet-stream",
-    };
-    let encoding = is_packed.then_some(("Content-Encoding", "br"));
-    let headers = [("Content-Type", kind)].into_iter().chain(encoding);
-    let headers = headers.filter_map(|(name, value)| Header::from_bytes(name, value).ok());
-    let response = headers.fold(Response::from_data(bytes), Response::with_header);
-    let _ = request.respond(response);
 }
