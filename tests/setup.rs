@@ -58,7 +58,7 @@ fn what_is_missing_is_named_with_the_command_that_gets_it() {
 #[test]
 fn a_browser_is_missing_for_the_tests_alone() {
     let (_folder, rustc) = browsers_rustc();
-    let tools = [("cargo", ""), ("c++", ""), ("rustc", rustc.as_str())];
+    let tools = [("cargo", ""), ("c++", ""), ("Xvfb", ""), ("rustc", rustc.as_str())];
     let output = setup(&["browser"], &tools, &[]);
     assert_eq!(output.status.code(), Some(1));
     let text = stderr(&output);
@@ -69,8 +69,15 @@ fn a_browser_is_missing_for_the_tests_alone() {
     assert!(is_silent(&setup(&[], &tools, &[])));
     assert!(is_silent(&setup(&["browser"], &tools, &[("RELIEVO_CHROMIUM", "/opt/chrome")])));
     for name in ["chromium", "google-chrome"] {
-        assert!(is_silent(&setup(&["browser"], &[tools[0], tools[1], tools[2], (name, "")], &[])), "{name}");
+        assert!(
+            is_silent(&setup(&["browser"], &[tools[0], tools[1], tools[2], tools[3], (name, "")], &[])),
+            "{name}"
+        );
     }
+    // No display for windows.
+    let output = setup(&["browser"], &[tools[0], tools[1], tools[3], ("chromium", "")], &[]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("sudo apt-get install xvfb"), "{}", stderr(&output));
 }
 
 /// Without `rustc` and a linker for WebAssembly on the search path, and with a `rustc` that lacks the target.
@@ -78,8 +85,8 @@ fn a_browser_is_missing_for_the_tests_alone() {
 fn rust_for_browsers_is_missing_for_the_tests_alone() {
     let (folder, _) = browsers_rustc();
     let other = format!("echo {}", folder.path().join("lib").display());
-    let tools = [("cargo", ""), ("c++", ""), ("chromium", ""), ("rustc", other.as_str())];
-    for tools in [&tools[..3], &tools[..]] {
+    let tools = [("cargo", ""), ("c++", ""), ("chromium", ""), ("Xvfb", ""), ("rustc", other.as_str())];
+    for tools in [&tools[..4], &tools[..]] {
         let output = setup(&["browser"], tools, &[]);
         assert_eq!(output.status.code(), Some(1));
         let text = stderr(&output);
@@ -97,7 +104,7 @@ fn rust_for_browsers_is_missing_for_the_tests_alone() {
 #[test]
 fn root_gets_the_browser_installed() {
     let (_folder, rustc) = browsers_rustc();
-    let root = [("cargo", ""), ("c++", ""), ("id", "echo 0"), ("rustc", rustc.as_str())];
+    let root = [("cargo", ""), ("c++", ""), ("id", "echo 0"), ("Xvfb", ""), ("rustc", rustc.as_str())];
     let asked = tempfile::NamedTempFile::new().expect("a temporary file");
     let apt = |exit: &str| format!("echo \"$@\" >> {}; {exit}", asked.path().display());
     for (exit, expected) in [
@@ -114,7 +121,7 @@ fn root_gets_the_browser_installed() {
     ] {
         std::fs::write(asked.path(), "").expect("writable");
         let script = apt(exit);
-        let fakes = [root[0], root[1], root[2], root[3], ("apt-get", script.as_str())];
+        let fakes = [root[0], root[1], root[2], root[3], root[4], ("apt-get", script.as_str())];
         let marks = asked.path().to_str().expect("UTF-8");
         let output = setup(&["browser"], &fakes, &[("MARKS", marks)]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
