@@ -1,4 +1,5 @@
-# make demo · make test · make bench · make bless · make lint · make view · make web · make serve
+# make demo · make test · make bench · make bless · make lint · make view · make web · make serve · make test-page ·
+# make test-s3
 #
 # Each target sets up what it needs: see scripts/setup.sh.
 
@@ -12,7 +13,7 @@ PAGE ?= target/page
 PORT ?= 8080
 SCENE ?= examples/scenes/ruins.json
 
-.PHONY: demo test test-page bench bless lint view web serve setup adapter browser wasm
+.PHONY: demo test test-page test-s3 bench bless lint view web serve setup adapter browser wasm
 
 demo: adapter
 	$(CARGO) run --bin relievo -- demo --out $(OUT)
@@ -24,6 +25,10 @@ test: browser
 # The viewer's page in Chromium. It compiles the page first, unless RELIEVO_PAGE is the folder that `make web` wrote.
 test-page: browser
 	$(CARGO) test --test page
+
+# The server with its models in an object store: moto, which comes from PyPI.
+test-s3: setup
+	scripts/s3.sh $(CARGO) test -p relievo-delivery --features s3 --test s3
 
 # The demo's scene in the viewer, with a window.
 view: adapter

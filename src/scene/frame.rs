@@ -179,7 +179,10 @@ impl Scene {
         if self.is_broken || self.staging.has_dropped() {
             self.invalidate()?;
         }
-        self.objects.iter_mut().for_each(|object| object.settle(self.now));
+        for object in self.objects.iter_mut() {
+            object.settle(self.now);
+            object.arrive(self.step);
+        }
         let sent = self.upload()?;
         self.provide(views)?;
         self.fit(views)?;

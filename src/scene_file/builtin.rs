@@ -15,6 +15,11 @@ pub trait BuiltIns {
     /// [`InputError`] for an unknown name; the message lists the existing names.
     fn model(&self, name: &str) -> Result<Model, InputError>;
 
+    /// Whether there is a built-in model with this name. By default the model is made to find out.
+    fn has_model(&self, name: &str) -> bool {
+        self.model(name).is_ok()
+    }
+
     /// The heights and colours of the built-in relief with this name.
     ///
     /// # Errors

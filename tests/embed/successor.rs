@@ -10,8 +10,8 @@ use relievo::gpu::Gpu;
 use relievo::ops::skinning::cook;
 use relievo::render::Renderer;
 use relievo::scene::{
-    Camera, CharacterOptions, InstanceId, LayerMask, ObjectId, Placement, Play, Quality, Scene, Transition,
-    View,
+    Camera, CharacterOptions, InstanceId, LayerMask, ObjectId, Pace, Placement, Play, Quality, Scene,
+    Transition, View,
 };
 
 use crate::frame::{Frame, device, devices};
@@ -108,6 +108,57 @@ fn a_finer_model_takes_the_place_of_a_coarser_one() {
     stage.scene.play(walker, &Play::new("0")).expect("still there");
     stage.scene.despawn(walker).expect("still there");
     assert!(stage.shot() != before);
+}
+
+/// How many of the values of two pictures differ by more than 8 of 255.
+fn changed(a: &RgbaImage, b: &RgbaImage) -> usize {
+    a.iter().zip(b.iter()).filter(|(a, b)| a.abs_diff(**b) > 8).count()
+}
+
+/// Instances go through all levels between the old and the new model, by the object's transition.
+#[test]
+fn finer_levels_appear_by_the_transition_of_the_object() {
+    let gpu = device();
+    let (rocks, people) = (stages("rock"), stages("creature"));
+    let transitions =
+        [Transition::Geomorph, Transition::Dither(Pace::Band(0.3)), Transition::Dither(Pace::Seconds(0.5))];
+    for transition in transitions {
+        let staged = |at: usize| {
+            let mut stage = Stage::new(&gpu, &rocks[at], &people[at]);
+            for object in [stage.rocks, stage.people] {
+                stage.scene.set_level_of_detail(object, &transition.into()).expect("levels");
+            }
+            // Who stands still remains.
+            stage.scene.despawn(stage.instances[1]).expect("there");
+            stage.scene.set_statistics(true).expect("allocated");
+            stage
+        };
+        let mut stage = staged(0);
+        let coarse = stage.shot();
+        assert!(!stage.scene.is_refining());
+        stage.set(&rocks[2], &people[2]);
+        assert!(stage.scene.is_refining());
+        assert!(stage.shot() == coarse, "{transition:?}: the first picture is not the old one");
+        let mut pictures = vec![coarse];
+        let mut bounds = Vec::new();
+        for _ in 0..30 {
+            stage.scene.advance(0.025).expect("finite");
+            pictures.push(stage.shot());
+            bounds.push(stage.view.statistics().expect("arrived").pixels);
+        }
+        assert!(!stage.scene.is_refining());
+        let fine = staged(2).shot();
+        assert!(pictures.last() == Some(&fine), "{transition:?}: not the picture of a new scene");
+        let pop = changed(&pictures[0], &fine);
+        let largest = pictures.windows(2).map(|two| changed(&two[0], &two[1])).max().expect("some");
+        let different = pictures.windows(2).filter(|two| two[0] != two[1]).count();
+        println!("{transition:?}: {pop} values change, at most {largest} at once, in {different} frames");
+        assert!(bounds[0] > 0.5 && bounds[29] == 0.5, "{bounds:?}");
+        assert!(
+            different >= 8 && 2 * largest < pop,
+            "{transition:?}: {largest} of {pop} at once, {different}"
+        );
+    }
 }
 
 #[test]

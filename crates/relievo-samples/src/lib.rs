@@ -46,6 +46,10 @@ impl relievo::scene_file::BuiltIns for Samples {
         Ok(found)
     }
 
+    fn has_model(&self, name: &str) -> bool {
+        MODELS.contains(&name)
+    }
+
     fn map(&self, name: &str) -> Result<(relievo::ops::surface::HeightMap, image::RgbaImage), InputError> {
         const TEXELS: u32 = 512;
         let map: BuiltInMap = name.parse()?;

@@ -25,6 +25,7 @@ use crate::scene::object_kind::ObjectKind;
 use crate::scene::options::CharacterOptions;
 use crate::scene::quality::ErrorBudget;
 use crate::scene::relief::{self, Relief};
+use crate::scene::successor::Arrival;
 use crate::scene::terrain::{self, TerrainSource};
 use crate::shared::lod::instance::{INSTANCE_ALIVE, SceneInstance};
 use crate::shared::lod::object::{LodObject, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
@@ -68,6 +69,8 @@ pub(crate) struct Object {
     pub(super) pending: Option<PendingUploads>,
     /// The object that takes this one's place once its data has arrived.
     pub(super) successor: Option<Box<Object>>,
+    /// How far the levels of a new model have come into use.
+    pub(super) arrival: Arrival,
     /// Materials and images of a mesh or a character; `None` for other kinds.
     pub(super) looks: Option<Looks>,
     /// The draws of a chunk, [`OBJECT_LEVELS`] for each part. Their instance counts are 0.
@@ -107,6 +110,7 @@ impl Object {
             is_visible: true,
             pending: None,
             successor: None,
+            arrival: Arrival::default(),
             looks: None,
             draws,
             chunks,
@@ -235,7 +239,8 @@ impl Object {
 
     /// For each level of detail, the smallest metric at which the level is drawn or begins to geomorph.
     pub(super) fn thresholds(&self) -> Vec<f32> {
-        self.level_of_detail.thresholds(&self.errors, &self.triangles())
+        let thresholds = self.level_of_detail.thresholds(&self.errors, &self.triangles());
+        self.arrival.lowered(thresholds)
     }
 
     /// The number of triangles of each level of detail.
@@ -300,7 +305,7 @@ impl Object {
             let scale = instance.largest_scale();
             let radius = scale * radius;
             let pixels = |camera: &LodCamera| {
-                let (own, allowed) = (scale * self.finest_error, camera.allows(center, radius));
+                let (own, allowed) = (scale * self.finest_error(), camera.allows(center, radius));
                 let is_within = own <= self.mesh_fraction * allowed;
                 let displacement = own + (1.0 - self.mesh_fraction) * allowed;
                 if is_within { 0.0 } else { camera.pixels_of(displacement, center, radius) }

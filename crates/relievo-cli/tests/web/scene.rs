@@ -16,8 +16,8 @@ use crate::harness::{Difference, Tolerance, browser, gpu};
 use crate::picture::{SIZE, World, mistakes};
 use relievo_testing::wasm::Program;
 
-/// The results of one page load, which all tests of this file examine.
-fn said() -> &'static Value {
+/// The results of one page load, which all tests of this file and of `delivery.rs` examine.
+pub fn said() -> &'static Value {
     static SAID: OnceLock<Value> = OnceLock::new();
     SAID.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a temporary folder");
@@ -29,7 +29,9 @@ fn said() -> &'static Value {
         let built = start.elapsed().as_secs_f32();
         let read = |name: &str| std::fs::read(folder.path().join(name)).expect("written");
         let (script, program) = (read("scene.js"), read("scene_bg.wasm"));
+        let server = crate::delivery::host().base();
         let files = [
+            ("/server", server.as_bytes()),
             ("/", include_bytes!("scene.html").as_slice()),
             ("/scene.js", script.as_slice()),
             ("/scene_bg.wasm", program.as_slice()),

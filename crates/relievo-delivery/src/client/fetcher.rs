@@ -227,13 +227,20 @@ impl<T: Transport> Fetcher<T> {
                         self.traffic.received += bytes.len() as u64;
                     }
                     file.take(answer, now);
+                    if file.running.is_none() {
+                        // Nothing that this request still brings is taken.
+                        self.transport.cancel(id);
+                    }
                 }
                 None => self.take(id, answer, now),
             }
         }
+        let mut free = self.options.parallel.max(1);
+        free = free.saturating_sub(self.files.iter().filter(|file| file.running.is_some()).count());
         for file in &mut self.files {
             let is_open = !file.is_complete && file.failed.is_none();
-            if is_open && file.running.is_none() && file.until <= now {
+            if free > 0 && is_open && file.running.is_none() && file.until <= now {
+                free -= 1;
                 let token = self.options.token.clone();
                 file.running = Some(self.transport.start(Request { token, ..Request::whole(&file.url) }));
                 self.traffic.requests += 1;
@@ -439,8 +446,14 @@ impl FileEntry {
                 return;
             }
             Answer::End => {
-                (self.running, self.is_complete) = (None, true);
-                return;
+                let Some(damaged) = self.damaged() else {
+                    (self.running, self.is_complete) = (None, true);
+                    return;
+                };
+                if self.failures + 1 >= ATTEMPTS {
+                    self.failed = Some(FetchError::Content { url: self.url.clone(), source: damaged });
+                }
+                None
             }
             Answer::Head(Head { status, retry_after, .. }) if super::is_passing(status) => retry_after,
             Answer::Head(Head { status, .. }) => {
@@ -450,10 +463,19 @@ impl FileEntry {
             }
             Answer::Failed(_) => None,
         };
-        // Nothing that this request still brings is taken.
         self.running = None;
         self.until = now + after.unwrap_or(pause(self.failures));
         self.failures += 1;
+    }
+
+    /// The error of a file whose name is a hash, and whose content has another one.
+    fn damaged(&self) -> Option<InputError> {
+        let name = self.url.rsplit('/').next().unwrap_or_default();
+        let name = name.split('.').next().unwrap_or_default();
+        let is_hash = name.len() == 64 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let found = crate::sha256(&self.bytes);
+        let bound = || format!("must be {name}, the name of the file");
+        (is_hash && found != name).then(|| InputError::new("sha256", found, bound()))
     }
 }
 

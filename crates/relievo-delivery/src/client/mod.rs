@@ -16,7 +16,7 @@ mod transport;
 pub use browser::BrowserTransport;
 #[cfg(not(target_arch = "wasm32"))]
 pub use download::{Download, get, get_catalog};
-pub use fetcher::{FetchState, Fetched, Fetcher, FetcherOptions, ModelKey, Traffic, Want};
+pub use fetcher::{FetchState, Fetched, Fetcher, FetcherOptions, FileKey, ModelKey, Traffic, Want};
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::HttpTransport;
 #[cfg(feature = "scene")]

@@ -65,8 +65,8 @@ pub(super) struct Source<'a> {
     /// The content of its file; of a built-in model, its name.
     pub bytes: &'a [u8],
     pub read: Read<'a>,
-    /// The model, if it is built in.
-    pub built_in: Option<&'a Model>,
+    /// Makes the model, if it is built in.
+    pub built_in: Option<&'a (dyn Fn() -> Result<Model, InputError> + Sync)>,
     /// Gets the completed fraction of the work.
     pub watch: &'a (dyn Fn(f32) + Sync),
 }
@@ -246,7 +246,7 @@ fn made(source: &Source<'_>) -> Result<(Vec<u8>, Vec<NamedFile>), ServeError> {
         Ok(found)
     };
     let file = match built_in {
-        Some(model) => model.clone().into(),
+        Some(make) => make().map_err(in_file)?.into(),
         None => ModelFile::from_bytes_beside(name.as_ref(), bytes, &beside).map_err(in_file)?,
     };
     let package = cook(&file, &mut |fraction| {

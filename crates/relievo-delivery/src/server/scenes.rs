@@ -43,7 +43,7 @@ impl SceneSource {
         let mut renamed = BTreeMap::new();
         let mut refused = None;
         each_name(&mut text, &mut |field, name| {
-            let is_model = field == "file" && (is_model(name) || built_ins.model(built_in(name)).is_ok());
+            let is_model = field == "file" && (is_model(name) || built_ins.has_model(built_in(name)));
             if is_model {
                 models.push(name.clone());
             } else if field == "levels" && !name.starts_with(BUILT_IN) && !name.ends_with(".glb") {

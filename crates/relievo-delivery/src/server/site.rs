@@ -235,15 +235,18 @@ impl Inner {
     ) -> Result<Resource, ServeError> {
         let mut paths = BTreeMap::new();
         for name in &scene.models {
-            let model: Option<Model> = self.built_ins.model(built_in(name)).ok();
-            let bytes = match model {
-                Some(_) => Bytes::from(name.clone()),
-                None => scene.read(name.as_ref()).map_err(|error| ServeError::io(name, error))?.into(),
+            let is_built_in = self.built_ins.has_model(built_in(name));
+            let make = || self.built_ins.model(built_in(name));
+            let bytes = match is_built_in {
+                true => Bytes::from(name.clone()),
+                false => scene.read(name.as_ref()).map_err(|error| ServeError::io(name, error))?.into(),
             };
             let folder = Path::new(name).parent().unwrap_or(Path::new(""));
             let read = |path: &Path| scene.read(&folder.join(path));
             let watch = |fraction| watch(name, fraction);
-            let source = Source { name, bytes: &bytes, read: &read, built_in: model.as_ref(), watch: &watch };
+            let built_in: Option<&(dyn Fn() -> Result<Model, InputError> + Sync)> =
+                if is_built_in { Some(&make) } else { None };
+            let source = Source { name, bytes: &bytes, read: &read, built_in, watch: &watch };
             let package = self.cache.cooked(&source).await?;
             paths.insert(name.clone(), object_name(&package.hash));
             self.add_package(&package);

@@ -64,12 +64,14 @@ impl Transport for Memory {
                         request.range.as_ref().map_or(u64::MAX, |range| range.end).min(file.len() as u64);
                     if !std::mem::replace(begun, true) {
                         let tag = Some(format!("\"{}\"", sha256(file)));
-                        let status =
-                            if request.if_match.as_ref().is_none_or(|wanted| Some(wanted) == tag.as_ref()) {
-                                206
-                            } else {
-                                412
-                            };
+                        let status = if request.range.is_none() {
+                            200
+                        } else if request.if_match.as_ref().is_none_or(|wanted| Some(wanted) == tag.as_ref())
+                        {
+                            206
+                        } else {
+                            412
+                        };
                         let total = Some(file.len() as u64);
                         own.push(Answer::Head(Head { status, tag, start: *at, total, retry_after: None }));
                     }
@@ -284,6 +286,50 @@ fn a_missing_file_fails_and_a_changed_one_begins_again() {
     fetcher.transport_mut().files.insert("rock".to_owned(), Arc::new(creature().to_vec()));
     settle(&mut fetcher, &mut now, 10_000);
     assert!(fetcher.bytes(model) == creature(), "{:?}", fetcher.state(model));
+}
+
+#[test]
+fn files_come_a_few_at_once_and_those_named_by_a_hash_are_checked() {
+    let mut memory = Memory::new(1000);
+    let content = |at: u8| vec![at; 3000];
+    let named: Vec<String> = (0..20).map(|at| format!("objects/{}.png", sha256(&content(at)))).collect();
+    for (at, name) in (0..).zip(&named) {
+        memory.files.insert(name.clone(), Arc::new(content(at)));
+    }
+    let mut fetcher = Fetcher::new(memory, FetcherOptions::default());
+    let keys: Vec<_> = named.iter().map(|name| fetcher.add_file(name)).collect();
+    let mut now = Duration::ZERO;
+    while !fetcher.is_settled() {
+        now += STEP;
+        fetcher.update(now);
+        assert!(fetcher.transport_mut().running.len() <= 4);
+    }
+    assert!((0..).zip(&keys).all(|(at, key)| fetcher.file(*key) == Ok(Some(&content(at)[..]))));
+    assert_eq!(fetcher.traffic().requests, 20);
+    // A bit flips once: the file is asked for again. It always flips: that is an error.
+    for (faults, requests) in [(1, 2), (9, 3)] {
+        let mut memory = Memory::new(1000);
+        memory.files.insert(named[0].clone(), Arc::new(content(0)));
+        let mut left = faults;
+        memory.fault = Some(Box::new(move |_, answer| match answer {
+            Answer::Bytes(mut bytes) if left > 0 && bytes.len() == 1000 => {
+                bytes[500] ^= 4;
+                left -= 1;
+                vec![Answer::Bytes(bytes)]
+            }
+            answer => vec![answer],
+        }));
+        let mut fetcher = Fetcher::new(memory, FetcherOptions::default());
+        let [key, missing] = [&*named[0], "none"].map(|name| fetcher.add_file(name));
+        settle(&mut fetcher, &mut now, 1000);
+        match fetcher.file(key) {
+            Ok(found) => assert!(faults == 1 && found == Some(&content(0)[..])),
+            Err(error) => assert!(faults > 1 && error.to_string().contains("sha256 = "), "{error}"),
+        }
+        assert!(matches!(fetcher.file(missing), Err(FetchError::Status { status: 404, .. })));
+        assert_eq!(fetcher.traffic().requests, requests + 1);
+        assert_eq!(fetcher.transport_mut().running.len(), 0, "nothing runs on");
+    }
 }
 
 /// Mutated answers: a model, or an error by name; no panic, no endless work. `RELIEVO_MUTATIONS` sets their number.

@@ -44,10 +44,20 @@ fn each_level_is_that_of_the_package() {
     }
 }
 
+/// `RELIEVO_MODELS` names a folder with further models.
 #[test]
 fn a_difference_gives_the_finer_level_for_all_pairs() {
-    let host = Host::start(options(models()));
-    for (name, bytes) in [("rock", rock()), ("creature", creature())] {
+    let other = std::env::var_os("RELIEVO_MODELS").map(std::path::PathBuf::from);
+    for folder in std::iter::once(models()).chain(other.as_deref()) {
+        all_pairs(&Host::start(options(folder)));
+    }
+}
+
+/// Thesis B's JSON, and the chunks of the package.
+fn all_pairs(host: &Host) {
+    for model in host.site.catalog().models {
+        let (name, bytes) = (model.name, host.get(&format!("/{}", model.package), &[]).body);
+        let bytes = &bytes;
         let count = PackageHeader::read(bytes).expect("a header").0.levels.len();
         let whole = |level: usize| -> MeshJson {
             serde_json::from_slice(&host.get(&format!("/models/{name}/{level}.json"), &[]).body)
@@ -63,32 +73,30 @@ fn a_difference_gives_the_finer_level_for_all_pairs() {
                 assert!(mesh == levels[to], "{name}: {from} to {to}");
             }
         }
+        chunks(bytes);
+        println!("{name}: {} differences", count * (count - 1) / 2);
     }
 }
 
-#[test]
-fn chunks_from_one_level_to_another_give_the_hash_of_the_level() {
-    for bytes in [rock(), creature()] {
-        let header = PackageHeader::read(bytes).expect("a header").0;
-        let count = header.levels.len();
-        for from in 0..count {
-            for to in 0..=from {
-                // What a client has, then what a request for the difference brings.
-                let end = header.levels[count - 1 - from].chunk.end;
-                let mut stream = PackageStream::resumed(&bytes[..end]).expect("a beginning");
-                assert_eq!(stream.level(), Some(from));
-                if let Some(range) = stream.missing(to) {
-                    stream
-                        .push(range.start, &bytes[range.start as usize..range.end as usize])
-                        .expect("sound");
-                }
-                assert_eq!((stream.level(), stream.missing(to)), (Some(to), None));
-                let mut package = Package::new(&stream.complete()).expect("a package");
-                for level in &header.levels[..count - to] {
-                    package.add_level(stream.chunk(&level.chunk).expect("complete")).expect("sound");
-                }
-                assert_eq!(package.hash().expect("a hash"), header.levels[count - 1 - to].hash);
+/// The chunks from each level to each finer one give the hash of the finer one.
+fn chunks(bytes: &[u8]) {
+    let header = PackageHeader::read(bytes).expect("a header").0;
+    let count = header.levels.len();
+    for from in 0..count {
+        for to in 0..=from {
+            // What a client has, then what a request for the difference brings.
+            let end = header.levels[count - 1 - from].chunk.end;
+            let mut stream = PackageStream::resumed(&bytes[..end]).expect("a beginning");
+            assert_eq!(stream.level(), Some(from));
+            if let Some(range) = stream.missing(to) {
+                stream.push(range.start, &bytes[range.start as usize..range.end as usize]).expect("sound");
             }
+            assert_eq!((stream.level(), stream.missing(to)), (Some(to), None));
+            let mut package = Package::new(&stream.complete()).expect("a package");
+            for level in &header.levels[..count - to] {
+                package.add_level(stream.chunk(&level.chunk).expect("complete")).expect("sound");
+            }
+            assert_eq!(package.hash().expect("a hash"), header.levels[count - 1 - to].hash);
         }
     }
 }

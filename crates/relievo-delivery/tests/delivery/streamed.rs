@@ -97,13 +97,16 @@ impl Player {
         self.view.set(camera).expect("a camera");
     }
 
-    /// Updates until nothing is missing.
+    /// Updates until nothing is missing, and draws until all of it is in use.
     fn settle(&mut self) {
         while !self.streamed.is_settled() {
             self.update();
             std::thread::sleep(Duration::from_millis(2));
         }
         self.update();
+        while self.world.scene.is_refining() {
+            self.shot();
+        }
     }
 }
 
@@ -135,7 +138,7 @@ fn objects_appear_and_become_finer_until_the_picture_is_that_of_the_whole_scene(
             pictures.push(player.shot());
         }
     }
-    player.update();
+    player.settle();
     pictures.push(player.shot());
     assert!(pictures.last() == Some(&expected), "not the picture of the whole scene");
     pictures.dedup();

@@ -5,162 +5,18 @@
 mod host;
 #[path = "../delivery/random.rs"]
 mod random;
+mod trials;
 
-use std::io::{Read as _, Write as _};
-use std::net::TcpStream;
-use std::ops::Range;
-use std::time::{Duration, Instant};
-
-use relievo::asset::package::PackageHeader;
-use relievo_delivery::server::ServeOptions;
-use relievo_delivery::sha256;
-
-use host::{Host, creature, models, options, rock};
-use random::Random;
-
-/// Memory of this process in bytes.
-fn memory() -> u64 {
-    let text = std::fs::read_to_string("/proc/self/statm").expect("Linux");
-    text.split(' ').nth(1).and_then(|pages| pages.parse().ok()).map_or(0, |pages: u64| pages * 4096)
-}
-
-/// Every level of a model twice, as a range of bytes and as JSON. Returns the times of the requests.
-fn fetch_all(base: &str, name: &str, whole: &[u8], ranges: &[Range<usize>]) -> Vec<Duration> {
-    let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
-    let mut times = Vec::new();
-    let mut ask = |path: &str, header: Option<(&str, String)>| {
-        let begun = Instant::now();
-        let call = agent.get(format!("{base}/{path}"));
-        let call = header.into_iter().fold(call, |call, (name, value)| call.header(name, value));
-        let mut answer = call.call().expect("an answer");
-        let body = answer.body_mut().read_to_vec().expect("a body");
-        times.push(begun.elapsed());
-        (answer.status().as_u16(), body, answer.headers().get("etag").cloned())
-    };
-    for range in ranges {
-        let wanted = ("range", format!("bytes={}-{}", range.start, range.end - 1));
-        let (status, body, _) = ask(&format!("models/{name}.rlv"), Some(wanted));
-        assert!(status == 206 && body == whole[range.clone()], "{name} {range:?}");
-    }
-    for level in 0..ranges.len() {
-        let path = format!("models/{name}/{level}.json");
-        let (status, first, tag) = ask(&path, None);
-        assert_eq!(status, 200);
-        let tag = tag.expect("a tag").to_str().expect("text").to_owned();
-        let (status, second, _) = ask(&path, Some(("if-none-match", tag)));
-        assert!(status == 304 && second.is_empty() && !first.is_empty());
-    }
-    times
-}
+use host::{Host, models, options};
 
 #[test]
 fn two_hundred_clients_get_every_level_twice() {
-    const CLIENTS: usize = 200;
-    let host = Host::start(options(models()));
-    let base = host.base();
-    let (mut times, mut levels, mut grown) = (Vec::new(), 0, Vec::new());
-    // The second half must not need more memory than the first.
-    for name in ["rock", "creature"].repeat(4) {
-        let whole = if name == "rock" { rock() } else { creature() };
-        let header = PackageHeader::read(whole).expect("a header").0;
-        let others = header.levels[1..].iter().map(|level| level.chunk.range());
-        let ranges: Vec<_> = std::iter::once(0..header.levels[0].chunk.end).chain(others).collect();
-        if grown.len() < 2 {
-            levels += ranges.len();
-        }
-        std::thread::scope(|scope| {
-            let client = || fetch_all(&base, name, whole, &ranges);
-            let clients: Vec<_> = (0..CLIENTS).map(|_| scope.spawn(client)).collect();
-            times.extend(clients.into_iter().flat_map(|client| client.join().expect("no error")));
-        });
-        grown.push(memory());
-    }
-    times.sort();
-    let [p50, p99] = [50, 99].map(|part| times[times.len() * part / 100]);
-    println!("{} requests, p50 {p50:?}, p99 {p99:?}, memory {grown:?}", times.len());
-    let growth = grown[7].saturating_sub(grown[3]);
-    assert!(growth < 16 << 20, "{growth} bytes in the second half");
-    let metrics = String::from_utf8(host.get("/metrics", &[]).body).expect("text");
-    let made = metrics.lines().find(|line| line.starts_with("relievo_mesh_misses_total")).expect("a counter");
-    assert_eq!(made, format!("relievo_mesh_misses_total {levels}"), "each level is made once");
+    trials::two_hundred_clients(&Host::start(options(models())));
 }
 
 #[test]
 fn a_thousand_malformed_requests_harm_nobody() {
     let mut limited = options(models());
     limited.limits.header_seconds = 1.0;
-    let host = Host::start(ServeOptions { ..limited });
-    let mut random = Random(6);
-    let odd = [
-        "/../../etc/passwd",
-        "/models/../../rock.glb",
-        "/%00",
-        "/models/rock/-1.json",
-        "/models/rock/1e9.json",
-        "/models/rock/99999999999999999999.json",
-        "/objects/",
-        "//",
-        "/models//0.json",
-        "/terrain/features/a,b.json",
-        "/models/rock/0-0.json",
-        "/\u{fffd}",
-        "/models/%2e%2e%2f",
-        "/catalog.json/..",
-        "/scenes/../catalog.json?x=%zz",
-    ];
-    let ranges = [
-        "bytes=-",
-        "bytes=5",
-        "bytes=-0",
-        "bytes=1-0",
-        "bytes=0-1,2-3,4-",
-        "octets=0-1",
-        "bytes=\u{7f}",
-        "bytes=-99999999999999",
-    ];
-    let methods = ["POST", "PUT", "DELETE", "PATCH", "TRACE", "BREW", "get", "CONNECT"];
-    let mut slow = Vec::new();
-    for at in 0..1000 {
-        let pick =
-            |list: &[&'static str], random: &mut Random| list[random.below(list.len() as u64) as usize];
-        let answer = match at % 5 {
-            0 => host.get(pick(&odd, &mut random), &[]),
-            1 => host.get("/models/rock.rlv", &[("range", pick(&ranges, &mut random))]),
-            2 => host.ask(
-                pick(&methods, &mut random),
-                pick(&["/catalog.json", "/models/rock.rlv"], &mut random),
-                &[],
-            ),
-            3 => {
-                let long = "x".repeat(1 << (8 + random.below(10)));
-                host.get("/catalog.json", &[("x-long", &long)])
-            }
-            _ if at % 100 == 4 => {
-                // Senders that stop in the middle of a head.
-                let mut stream = TcpStream::connect(host.address).expect("a connection");
-                stream.write_all(b"GET /catalog.json HTTP/1.1\r\nhost: ").expect("sent");
-                slow.push(stream);
-                continue;
-            }
-            _ => {
-                let noise: Vec<u8> = (0..random.below(300)).map(|_| random.below(256) as u8).collect();
-                host.send(&[&noise[..], b"\r\n\r\n"].concat())
-            }
-        };
-        // A clear status, or for noise a closed connection.
-        let clear = matches!(answer.status, 200 | 206 | 400 | 404 | 405 | 414 | 416 | 431);
-        assert!(clear || answer.status == 0 && at % 5 == 4, "request {at}: {}", answer.status);
-        assert!(!String::from_utf8_lossy(&answer.body).contains("root:"), "request {at}");
-        if at % 50 == 0 {
-            assert_eq!(host.get("/health", &[]).status, 200, "after request {at}");
-        }
-    }
-    for mut stream in slow {
-        stream.set_read_timeout(Some(Duration::from_secs(20))).expect("a timeout");
-        let mut rest = Vec::new();
-        let ended = stream.read_to_end(&mut rest);
-        assert!(ended.is_ok(), "the server closes what is too slow: {ended:?}");
-    }
-    let whole = host.get("/models/rock.rlv", &[]);
-    assert_eq!(sha256(&whole.body), sha256(rock()));
+    trials::malformed_requests(&Host::start(limited));
 }

@@ -2,16 +2,23 @@
 
 #[path = "../../../../../../tests/mesh/alike.rs"]
 mod alike;
+mod delivery;
 mod picture;
+
+use std::time::Duration;
 
 use picture::World;
 use relievo::gpu::{Buffer, Gpu, Options};
+use relievo_delivery::client::BrowserTransport;
 use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
+use wasm_bindgen_futures::JsFuture;
 
 #[wasm_bindgen]
 unsafe extern "C" {
     /// Tells the page why the program ends.
     fn panicked(message: &str);
+    /// Resolves soon, after other work of the page.
+    fn pause() -> js_sys::Promise;
 }
 
 /// Lets the page know why a call fails that Rust aborts.
@@ -129,4 +136,16 @@ pub async fn parity(only: String) -> Result<Vec<String>, JsValue> {
     let report = run.await.map_err(|error| JsValue::from_str(&error.to_string()))?;
     let wrong = report.cases.iter().filter(|case| !case.comparison.holds).map(|case| format!("{case:?}"));
     Ok(std::iter::once(report.cases.len().to_string()).chain(wrong).collect())
+}
+
+/// Fetches all that a server has; see `delivery.rs`.
+#[wasm_bindgen]
+pub async fn fetched(base: &str) -> Result<Vec<String>, JsValue> {
+    let wait = async || {
+        // A promise of a timer is never refused.
+        let _ = JsFuture::from(pause()).await;
+        Duration::from_secs_f64(js_sys::Date::now() / 1000.0)
+    };
+    let lines = delivery::fetched(base, BrowserTransport::new(), wait).await;
+    lines.map_err(|error| JsValue::from_str(&error.to_string()))
 }
