@@ -490,3 +490,51 @@ fn planted_folders_and_kernels_are_found() {
     ];
     assert_eq!(found.iter().map(String::as_str).collect::<Vec<_>>(), expected);
 }
+
+/// The units that a command of cargo compiles, each with a hash of all that it depends on.
+fn units(arguments: &[&str]) -> BTreeMap<u64, String> {
+    let output = std::process::Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .args(arguments)
+        .args(["--unit-graph", "-Z", "unstable-options", "--offline"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .env("RUSTC_BOOTSTRAP", "1")
+        .output()
+        .expect("cargo starts");
+    let graph: serde_json::Value = serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&output.stderr)));
+    let all = graph["units"].as_array().expect("units");
+    let mut hashes = vec![None; all.len()];
+    (0..all.len())
+        .map(|at| (hash_of(all, at, &mut hashes), format!("{} {}", all[at]["pkg_id"], all[at]["features"])))
+        .collect()
+}
+
+fn hash_of(all: &[serde_json::Value], at: usize, hashes: &mut [Option<u64>]) -> u64 {
+    use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+    if let Some(hash) = hashes[at] {
+        return hash;
+    }
+    let unit = &all[at];
+    let needed = unit["dependencies"].as_array().expect("a list");
+    let mut needed: Vec<u64> = needed
+        .iter()
+        .map(|needed| hash_of(all, needed["index"].as_u64().expect("a number") as usize, hashes))
+        .collect();
+    needed.sort_unstable();
+    let mut hasher = DefaultHasher::new();
+    let profile =
+        ["opt_level", "debuginfo", "debug_assertions", "overflow_checks"].map(|key| &unit["profile"][key]);
+    let own = ["pkg_id", "target", "platform", "mode", "features"].map(|key| &unit[key]);
+    (format!("{profile:?} {own:?}"), needed).hash(&mut hasher);
+    *hashes[at].insert(hasher.finish())
+}
+
+/// A crate of the tests that wants another feature of something below wgpu would have wgpu and the library compiled twice.
+#[test]
+fn the_program_and_the_tests_share_one_build() {
+    let tests = units(&["test", "--no-run"]);
+    let program = units(&["build", "--bin", "relievo"]);
+    let twice: Vec<_> =
+        program.iter().filter(|(hash, _)| !tests.contains_key(hash)).map(|(_, unit)| unit).collect();
+    assert!(program.len() > 100 && twice.is_empty(), "see crates/relievo-cli/Cargo.toml: {twice:#?}");
+}
