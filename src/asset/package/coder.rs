@@ -19,34 +19,24 @@ const PRECISION: usize = 16;
 /// The sum of all probabilities.
 const WHOLE: u32 = 1 << PRECISION;
 
-/// Symbols that are handled at once.
-const LANES: usize = 8;
-
 /// Adaptive frequencies of the symbols of one alphabet, at most 256. Every symbol keeps a probability above 0.
 #[derive(Debug, Clone)]
 pub(super) struct Frequencies {
-    /// Cumulative probability below each symbol, in 1/[`WHOLE`]. The first is 0; what follows the last symbol means nothing.
-    below: Vec<[u16; LANES]>,
-    symbols: u16,
+    /// Cumulative probability below each symbol, in 1/[`WHOLE`]. The first is 0.
+    below: Vec<u16>,
     seen: u32,
 }
 
 impl Frequencies {
     /// Equal frequencies of `symbols` symbols.
     pub fn new(symbols: usize) -> Self {
-        let below = |symbol: usize| (symbol.min(symbols) * WHOLE as usize / symbols) as u16;
-        let lanes = |first: usize| std::array::from_fn(|lane| below(first + lane));
-        let below = (0..symbols).step_by(LANES).map(lanes).collect();
-        Self { below, symbols: symbols as u16, seen: 0 }
+        let below = (0..symbols).map(|symbol| (symbol * WHOLE as usize / symbols) as u16);
+        Self { below: below.collect(), seen: 0 }
     }
 
     /// Cumulative probability below a symbol, in 1/[`WHOLE`].
     fn cumulative(&self, symbol: usize) -> u32 {
-        if symbol < usize::from(self.symbols) {
-            self.below[symbol / LANES][symbol % LANES].into()
-        } else {
-            WHOLE
-        }
+        self.below.get(symbol).map_or(WHOLE, |below| u32::from(*below))
     }
 
     /// Moves the frequencies towards a symbol that was coded; at first by larger steps.
@@ -59,17 +49,12 @@ impl Frequencies {
             _ => 7,
         };
         self.seen = self.seen.saturating_add(1);
-        // A cumulative probability stays between `least` and `most + least`, so that each symbol keeps 1/`WHOLE`.
-        let most = 0_u16.wrapping_sub(self.symbols);
-        let symbol = symbol as u16;
-        for (first, lanes) in (0_u16..).step_by(LANES).zip(&mut self.below) {
-            for (lane, below) in (0_u16..).zip(lanes) {
-                let least = first + lane;
-                let lower = below.wrapping_sub(below.wrapping_sub(least) >> rate);
-                let higher = below.wrapping_add(most.wrapping_add(least).wrapping_sub(*below) >> rate);
-                *below = if least <= symbol { lower } else { higher };
-            }
-        }
+        // A cumulative probability stays between these bounds, so that each symbol keeps 1/`WHOLE`.
+        let most = (WHOLE as usize - self.below.len()) as u16;
+        let (at_most, above) = self.below.split_at_mut(symbol + 1);
+        (0_u16..).zip(at_most).for_each(|(least, below)| *below -= (*below - least) >> rate);
+        let first = symbol as u16 + 1;
+        (first..).zip(above).for_each(|(least, below)| *below += (most + least - *below) >> rate);
     }
 }
 
@@ -88,15 +73,10 @@ impl EncoderModel<PRECISION> for Frequencies {
 
 impl DecoderModel<PRECISION> for Frequencies {
     fn quantile_function(&self, quantile: u32) -> (usize, u32, NonZeroU32) {
+        // Sums of 16 bits are added for several symbols at once.
         let quantile = quantile as u16;
-        let mut counts = [0_u16; LANES];
-        for (first, lanes) in (0_u16..).step_by(LANES).zip(&self.below) {
-            for (lane, (below, count)) in (0_u16..).zip(lanes.iter().zip(&mut counts)) {
-                *count += u16::from(*below <= quantile && first + lane < self.symbols);
-            }
-        }
-        // The first symbol is always among them.
-        let symbol = usize::from(counts.iter().sum::<u16>()) - 1;
+        let symbol: u16 = self.below[1..].iter().map(|below| u16::from(*below <= quantile)).sum();
+        let symbol = usize::from(symbol);
         let from = self.cumulative(symbol);
         let size = self.cumulative(symbol + 1) - from;
         (symbol, from, NonZeroU32::MIN.saturating_add(size - 1))
