@@ -16,7 +16,8 @@ use crate::viewer::{Picture, Viewer};
 use crate::wires::paint_wires;
 
 /// Names, texts and titles of the scenes that the viewer brings along.
-pub const EXAMPLES: [(&str, &str, &str); 3] = [
+pub const EXAMPLES: [(&str, &str, &str); 4] = [
+    ("start.json", include_str!("examples/start.json"), "A creature in mountains without end"),
     ("mountains.json", include_str!("examples/mountains.json"), "Mountains without end"),
     ("creature.json", include_str!("examples/creature.json"), "A creature of 153 bones"),
     ("crowd.json", include_str!("examples/crowd.json"), "A crowd of 100"),

@@ -1,7 +1,7 @@
 //! The edges of the triangles that are drawn, painted over the picture.
 //!
-//! The device chooses levels, and tells how many instances it drew at each. So the level of an object's instances is known where
-//! all of them have the same one, and an object of which several levels are in view at once has no lines.
+//! The device chooses levels, and tells how many instances and triangles it drew at each. So the level of an object's instances is
+//! known where all of them have the same one, and an object of which several levels are in view at once has no lines.
 
 use std::collections::HashSet;
 
@@ -73,11 +73,19 @@ fn drawn_level(
     }
     let levels = counts.iter().flat_map(|counts| counts.levels.iter().enumerate());
     let drawn: Vec<usize> = levels.filter(|(_, level)| level.instances > 0).map(|(at, _)| at).collect();
-    match drawn[..] {
-        [] => Ok(None),
-        [level] => Ok(Some(level)),
-        _ => Err("several levels at once; choose one level above"),
-    }
+    let level = match drawn[..] {
+        [] => return Ok(None),
+        [level] => level,
+        _ => return Err("several levels at once; choose one level above"),
+    };
+    // The scene may have coarser levels than the model.
+    let own: usize =
+        object.model.iter().flat_map(|model| &model.meshes).map(|mesh| indices(mesh, level).len() / 3).sum();
+    let is_own = counts.is_some_and(|counts| {
+        let drawn = &counts.levels[level];
+        drawn.triangles == u64::from(drawn.instances) * own as u64
+    });
+    if is_own { Ok(Some(level)) } else { Err("this level is not the model's own") }
 }
 
 /// The triangles of a level; a mesh with fewer levels has its coarsest one.
