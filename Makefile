@@ -1,5 +1,5 @@
-# make demo · make test · make bench · make bless · make lint · make view · make web · make serve · make test-page ·
-# make test-s3
+# make demo · make test · make bench · make bless · make lint · make view · make web · make serve
+# make test-page · make test-s3 · make looks · make session
 #
 # Each target sets up what it needs: see scripts/setup.sh.
 
@@ -13,7 +13,7 @@ PAGE ?= target/page
 PORT ?= 8080
 SCENE ?= examples/scenes/ruins.json
 
-.PHONY: demo test test-page test-s3 bench bless lint view web serve setup adapter browser wasm
+.PHONY: demo test test-page test-s3 bench bless lint view web serve looks session setup adapter browser wasm
 
 demo: adapter
 	$(CARGO) run --bin relievo -- demo --out $(OUT)
@@ -42,6 +42,14 @@ web: wasm
 serve: wasm
 	-$(CARGO) run --release -p relievo-testing --bin page -- $(PAGE)
 	$(CARGO) run --release --bin relievo -- serve --page $(PAGE) --scene $(SCENE) --cache target/cache --listen 127.0.0.1:$(PORT)
+
+# Pictures of every section of the viewer's panel, and of thesis A's experiment, in target/viewer.
+looks: adapter
+	$(CARGO) test --release --test viewer -- --ignored --nocapture looks
+
+# A session of 6,000 frames, after which the viewer holds as much memory as before.
+session: adapter
+	$(CARGO) test --release --test viewer -- --ignored --nocapture session
 
 bench: setup
 	RELIEVO_COMMIT=$$(git rev-parse --short HEAD 2>/dev/null || echo unknown) $(CARGO) run --release --bin relievo -- bench $(if $(ONLY),--only $(ONLY)) --json target/bench/summary.json

@@ -177,7 +177,9 @@ fn html(adapter: &str, contents: &str, figures: &str) -> String {
          code {{ font-size: .85em; background: #e7ecf0; padding: .1em .3em; border-radius: 3px }}\n\
          </style>\n<h1>relievo {version}</h1>\n\
          <p>Made on {adapter}. The heights are the same bits on every device: the same commands with \
-         <code>--backend cpu</code> give the same heights, bit for bit.</p>\n<nav><ul>\n{contents}</ul></nav>\n{figures}</html>\n",
+         <code>--backend cpu</code> give the same heights, bit for bit.</p>\n\
+         <p>The scenes move in the viewer, with every control of level of detail: <code>relievo view ruins.json</code>, or \
+         <code>make serve</code> and then <a href=\"http://localhost:8080/?scene=scenes/ruins.json\">this page</a>.</p>\n<nav><ul>\n{contents}</ul></nav>\n{figures}</html>\n",
         version = env!("CARGO_PKG_VERSION"),
     )
 }

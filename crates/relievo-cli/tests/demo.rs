@@ -33,4 +33,5 @@ fn the_demo_equals_its_goldens() {
         DEMO_VIEWS.iter().all(|name| page.contains(&format!("{name}.png"))),
         "index.html lacks a picture"
     );
+    assert!(page.contains("relievo view ruins.json") && page.contains("?scene=scenes/ruins.json"));
 }

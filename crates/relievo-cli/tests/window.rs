@@ -8,8 +8,10 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use x11rb::connection::Connection as _;
+use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
-    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, EventMask, ImageFormat, InputFocus,
+    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, CreateWindowAux, EventMask,
+    ImageFormat, InputFocus, PropMode, SELECTION_NOTIFY_EVENT, SelectionNotifyEvent, WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
@@ -93,6 +95,58 @@ impl Screen {
         self.x.intern_atom(false, name.as_bytes()).expect("asked").reply().expect("an atom").atom
     }
 
+    /// Drops a file onto a window as another program does (the protocol XDND).
+    fn drop_file(&self, window: u32, path: &Path) {
+        let source = self.x.generate_id().expect("a number");
+        let (class, aux) = (WindowClass::INPUT_ONLY, CreateWindowAux::new());
+        self.x.create_window(0, source, self.root, 0, 0, 1, 1, 0, class, 0, &aux).expect("asked");
+        let [selection, list, copy] =
+            ["XdndSelection", "text/uri-list", "XdndActionCopy"].map(|name| self.atom(name));
+        self.x.set_selection_owner(source, selection, x11rb::CURRENT_TIME).expect("asked");
+        let send = |name: &str, data: [u32; 4]| {
+            let [a, b, c, d] = data;
+            let message = ClientMessageEvent::new(32, window, self.atom(name), [source, a, b, c, d]);
+            self.x.send_event(false, window, EventMask::NO_EVENT, message).expect("sent");
+            self.x.flush().expect("sent");
+        };
+        send("XdndEnter", [5 << 24, list, 0, 0]);
+        send("XdndPosition", [0, 100 << 16 | 100, 0, copy]);
+        let text = format!("file://{}\r\n", path.display());
+        let (status, finished) = (self.atom("XdndStatus"), self.atom("XdndFinished"));
+        let start = Instant::now();
+        loop {
+            assert!(start.elapsed() < Duration::from_secs(30), "the window does not take the file");
+            match self.x.poll_for_event().expect("connected") {
+                // The window asks for the name of the file.
+                Some(Event::SelectionRequest(asked)) => {
+                    let (own, property) = (asked.requestor, asked.property);
+                    let bytes = text.as_bytes();
+                    let length = bytes.len() as u32;
+                    let mode = PropMode::REPLACE;
+                    self.x.change_property(mode, own, property, list, 8, length, bytes).expect("sent");
+                    let notice = SelectionNotifyEvent {
+                        response_type: SELECTION_NOTIFY_EVENT,
+                        sequence: 0,
+                        time: asked.time,
+                        requestor: own,
+                        selection: asked.selection,
+                        target: asked.target,
+                        property,
+                    };
+                    self.x.send_event(false, own, EventMask::NO_EVENT, notice).expect("sent");
+                    self.x.flush().expect("sent");
+                }
+                Some(Event::ClientMessage(message)) if message.type_ == status => {
+                    assert!(message.data.as_data32()[1] & 1 == 1, "the window refuses the file");
+                    send("XdndDrop", [0, 0, 0, 0]);
+                }
+                Some(Event::ClientMessage(message)) if message.type_ == finished => return,
+                Some(_) => {}
+                None => std::thread::sleep(Duration::from_millis(20)),
+            }
+        }
+    }
+
     /// The viewer's window.
     fn window(&self) -> Option<u32> {
         let tree = self.x.query_tree(self.root).ok()?.reply().ok()?;
@@ -150,6 +204,18 @@ fn the_window_shows_the_scene_and_obeys() {
     screen.pointer(6, 0, [300, 280]);
     screen.pointer(5, 1, [300, 280]);
     screen.wait("turned scene", |screen| different(&screen.pixels(part), &levels) > 500);
+
+    // A file that is dropped opens: its background is green.
+    let green = scene.replace("[0, 0, 1]", "[0, 1, 0]");
+    std::fs::write(folder.path().join("green.json"), green).expect("written");
+    screen.drop_file(window, &folder.path().join("green.json"));
+    screen.key(u32::from(b'l'));
+    screen.wait("dropped scene", |screen| {
+        let pixels = screen.pixels(part);
+        let is_green = |pixel: &&[u8]| pixel[1] > 200 && pixel[0] < 40 && pixel[2] < 40;
+        pixels.chunks(4).filter(is_green).count() > pixels.len() / 4 / 20
+    });
+    screen.key(u32::from(b'l'));
 
     // A larger window has its panel elsewhere.
     let corner = [900, 500, 60, 60];

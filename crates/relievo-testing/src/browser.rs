@@ -59,12 +59,27 @@ pub fn program_among(
 /// # Errors
 /// Without a result within `patience`, or when the browser ends: why, and what the browser wrote to stderr.
 pub fn visit(program: &Path, files: &[(&str, &[u8])], patience: Duration) -> Result<Value, String> {
+    visit_heard(program, &[], files, patience, &mut |_| ())
+}
+
+/// [`visit`] with further flags of the browser. `heard` is told what the page posts to `/note`, and the page waits for it.
+///
+/// # Errors
+/// As for [`visit`].
+pub fn visit_heard(
+    program: &Path,
+    flags: &[&str],
+    files: &[(&str, &[u8])],
+    patience: Duration,
+    heard: &mut dyn FnMut(&str),
+) -> Result<Value, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let server = Server::http("127.0.0.1:0").map_err(|error| error.to_string())?;
     let port = server.server_addr().to_ip().map_or(0, |address| address.port());
     let log = folder.path().join("stderr");
-    let mut browser = Browser::start(program, folder.path(), &log, &format!("http://localhost:{port}/"))?;
-    let result = result_of(&server, &mut browser, files, patience);
+    let address = format!("http://localhost:{port}/");
+    let mut browser = Browser::start((program, flags), folder.path(), &log, &address)?;
+    let result = result_of(&server, &mut browser, files, (patience, heard));
     drop(browser);
     result.map_err(|why| {
         let said = std::fs::read(&log).unwrap_or_default();
@@ -76,7 +91,7 @@ fn result_of(
     server: &Server,
     browser: &mut Browser,
     files: &[(&str, &[u8])],
-    patience: Duration,
+    (patience, heard): (Duration, &mut dyn FnMut(&str)),
 ) -> Result<Value, String> {
     let start = Instant::now();
     let mut note = "nothing".to_owned();
@@ -97,6 +112,7 @@ fn result_of(
             }
             (Method::Post, "/note") => {
                 note = body(&mut request)?;
+                heard(&note);
                 answer(request, 204, "", &[]);
             }
             _ => match files.iter().find(|(file, _)| *file == path) {
@@ -137,10 +153,16 @@ fn media_type(path: &str) -> &'static str {
 struct Browser(Child);
 
 impl Browser {
-    fn start(program: &Path, profile: &Path, log: &Path, address: &str) -> Result<Self, String> {
+    fn start(
+        (program, flags): (&Path, &[&str]),
+        profile: &Path,
+        log: &Path,
+        address: &str,
+    ) -> Result<Self, String> {
         let mut command = Command::new(program);
         command
             .args(FLAGS)
+            .args(flags)
             .arg(format!("--user-data-dir={}", profile.join("profile").display()))
             .arg(address)
             .env("HOME", profile)

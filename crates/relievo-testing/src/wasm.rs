@@ -116,3 +116,17 @@ impl Program<'_> {
         result.map_err(|error| format!("{error:#}"))
     }
 }
+
+/// The largest size of the page's WebAssembly and JavaScript together, with brotli, in bytes.
+pub const LARGEST: usize = 1_500_000;
+
+/// Number of bytes that are left by brotli at its best.
+///
+/// # Errors
+/// None for bytes in memory, but the library may have one.
+pub fn packed(bytes: &[u8]) -> std::io::Result<usize> {
+    let mut packed = Vec::new();
+    let options = brotli::enc::BrotliEncoderParams { quality: 11, lgwin: 24, ..Default::default() };
+    brotli::BrotliCompress(&mut &bytes[..], &mut packed, &options)?;
+    Ok(packed.len())
+}

@@ -226,6 +226,12 @@ impl Document {
         own
     }
 
+    /// The names of the files of meshes and then characters; `None` for one without a single file.
+    pub(crate) fn names(&self) -> Vec<Option<String>> {
+        let lists = ["meshes", "characters"].into_iter().filter_map(|list| self.root.get(list)?.as_array());
+        lists.flatten().map(|entry| Some(entry.get("file")?.as_str()?.to_owned())).collect()
+    }
+
     fn each_object(&mut self, mut change: impl FnMut(&mut Map<String, Value>)) {
         for list in ["meshes", "characters"] {
             if let Some(Value::Array(all)) = self.root.get_mut(list) {

@@ -20,6 +20,7 @@ use crate::document::{Content, Document};
 use crate::eye::Eye;
 use crate::source::{Source, Throttled};
 use crate::stage::Stage;
+use crate::streaming::{Fetching, Streaming};
 
 /// What to load.
 pub(crate) struct Job {
@@ -31,6 +32,8 @@ pub(crate) struct Job {
     pub rate: Option<f64>,
     /// The scene instead of the file's, and models that were prepared before: to build a changed scene anew.
     pub changed: Option<Changed>,
+    /// What a scene of a site, which is built anew, has fetched.
+    pub fetching: Option<Fetching>,
 }
 
 /// A changed scene, with what was read and prepared for it before.
@@ -45,6 +48,13 @@ pub(crate) struct Changed {
 pub(crate) struct Known {
     files: HashMap<PathBuf, Arc<[u8]>>,
     models: HashMap<String, Arc<Model>>,
+}
+
+impl Known {
+    /// Adds files that are there already.
+    pub fn add_files(&mut self, files: impl Iterator<Item = (PathBuf, Vec<u8>)>) {
+        self.files.extend(files.map(|(name, bytes)| (name, bytes.into())));
+    }
 }
 
 /// A file that arrived.
@@ -76,6 +86,8 @@ pub(crate) struct Ready {
     /// The size of what the camera frames, in world units: how fast keys fly.
     pub extent: f64,
     pub source: Arc<dyn Source>,
+    /// What the scene still fetches; `None` for one whose files were read whole.
+    pub streaming: Option<Streaming>,
 }
 
 /// A job that runs.
@@ -155,16 +167,20 @@ struct Loader<'a> {
 
 impl Loader<'_> {
     async fn load(&self, job: Job) -> Result<Ready, Error> {
-        let Job { gpu, name, source, rate, changed } = job;
+        let Job { gpu, name, source, rate, changed, fetching } = job;
         let throttled = Throttled { source: &*source, rate };
+        let mut fetching = fetching;
         let (document, known, is_framed) = match changed {
             Some(Changed { document, known }) => {
                 self.files.replace(known.files);
                 (document, known.models, true)
             }
             None => {
-                let (document, is_framed) = self.document(&name, &throttled).await?;
-                (document, HashMap::new(), is_framed)
+                let url = source.url(&name);
+                let mut own = url.is_some().then(|| Fetching::new(rate));
+                let found = self.document(&name, &throttled, own.as_mut().zip(url)).await?;
+                fetching = own;
+                (found.0, HashMap::new(), found.1)
             }
         };
         let in_file = |source: InputError| Error::InputFile { path: name.clone(), source };
@@ -173,6 +189,10 @@ impl Loader<'_> {
         let renamed =
             document.renamed(|name| known.contains_key(name).then(|| format!("builtin:{PREPARED}{name}")));
         let file = renamed.file().map_err(in_file)?;
+        if let (Some(url), Some(fetching), true) = (source.url(&name), fetching, Streaming::suits(&file)) {
+            let streaming = Streaming::new(file, &url, fetching);
+            return self.streamed(gpu, document, streaming, (source, is_framed)).await;
+        }
         self.fetch_all(&file, &throttled).await.map_err(in_file)?;
         let loaded = self
             .retried(&throttled, "preparing levels of detail", |read| file.load(read, &built_ins))
@@ -184,6 +204,30 @@ impl Loader<'_> {
             other => other,
         })?;
         self.ready(document, world, known, (source, is_framed)).await
+    }
+
+    /// Builds a scene of a site, as soon as there is something to show.
+    async fn streamed(
+        &self,
+        gpu: Gpu,
+        document: Document,
+        mut streaming: Streaming,
+        from: (Arc<dyn Source>, bool),
+    ) -> Result<Ready, Error> {
+        let wait = |why: &str| self.teller.tell(News::Step(format!("waiting for the server: {why}")));
+        self.teller.step("waiting for what the scene needs").await;
+        let loaded = streaming.begin(wait).await?;
+        self.teller.step("building the scene on the device").await;
+        let mut world = loaded.build_async(&gpu).await?;
+        self.teller.step("waiting for the coarsest level").await;
+        streaming.appear(&mut world, wait).await?;
+        for arrival in streaming.arrivals() {
+            self.teller.tell(News::Arrived(arrival));
+        }
+        // Its models are not known: they become finer.
+        let mut ready = self.ready(document, world, HashMap::new(), from).await?;
+        ready.known.models.clear();
+        Ok(Ready { streaming: Some(streaming), ..ready })
     }
 
     /// Frames the scene, and compiles its pipelines.
@@ -215,13 +259,24 @@ impl Loader<'_> {
         let camera = stage.world.camera.camera(0.0, [960, 600], relievo::scene::Depth::Forward);
         let distance = focus_distance(&stage.world, &camera).unwrap_or(extent);
         let known = Known { files: self.files.take(), models };
-        Ok(Ready { document, known, stage, eye: Eye::of(&camera, distance), extent, source })
+        Ok(Ready { document, known, stage, eye: Eye::of(&camera, distance), extent, source, streaming: None })
     }
 
-    /// The scene of a file, and whether it says where the camera is.
-    async fn document(&self, name: &Path, source: &Throttled<'_>) -> Result<(Document, bool), Error> {
+    /// The scene of a file, and whether it says where the camera is. Of a site's package, only the coarsest level is fetched.
+    async fn document(
+        &self,
+        name: &Path,
+        source: &Throttled<'_>,
+        site: Option<(&mut Fetching, String)>,
+    ) -> Result<(Document, bool), Error> {
         let in_file = |source: InputError| Error::InputFile { path: name.to_owned(), source };
         self.teller.step(format!("reading {}", name.display())).await;
+        let is_package = name.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rlv"));
+        if let Some((fetching, url)) = site.filter(|_| is_package) {
+            let wait = |why: &str| self.teller.tell(News::Step(format!("waiting for the server: {why}")));
+            let model = fetching.coarsest(&url, wait).await?;
+            return Ok((Document::of_model(name, &model), false));
+        }
         self.fetch(name, source).await.map_err(|error| Error::file(name, error))?;
         let bytes = self.files.borrow()[name].clone();
         let text = || {

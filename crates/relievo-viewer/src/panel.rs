@@ -13,13 +13,17 @@ use crate::controls::Drag;
 use crate::overlay::{self, Projected};
 use crate::theme::ACCENT;
 use crate::viewer::{Picture, Viewer};
+use crate::wires::paint_wires;
 
 /// Names, texts and titles of the scenes that the viewer brings along.
-pub const EXAMPLES: [(&str, &str, &str); 3] = [
+pub const EXAMPLES: [(&str, &str, &str); 4] = [
+    ("start.json", include_str!("examples/start.json"), "A creature in mountains without end"),
     ("mountains.json", include_str!("examples/mountains.json"), "Mountains without end"),
     ("creature.json", include_str!("examples/creature.json"), "A creature of 153 bones"),
     ("crowd.json", include_str!("examples/crowd.json"), "A crowd of 100"),
 ];
+
+pub use plots::quick;
 
 /// Width of the panel in points.
 const WIDTH: f32 = 320.0;
@@ -93,6 +97,9 @@ fn status(viewer: &Viewer) -> String {
     if viewer.is_resting() {
         return "resting: nothing is drawn until something is pressed or moved".to_owned();
     }
+    if let Some((why, seconds)) = viewer.shown.as_ref().and_then(crate::shown::Shown::waits) {
+        return format!("the server does not answer; it is asked again in {seconds:.0} s ({why})");
+    }
     let history = &viewer.history;
     let Some(last) = history.last() else { return "nothing is open".to_owned() };
     let frame = history.median(30, |sample| (sample.frame > 0.0).then_some(sample.frame));
@@ -101,7 +108,12 @@ fn status(viewer: &Viewer) -> String {
         Some(pixels) => format!("at most {pixels:.2} px off"),
         None => "no bound of the error".to_owned(),
     };
-    format!("{time}{} triangles · {bound}", grouped(last.triangles as u64))
+    let is_site = |shown: &crate::shown::Shown| shown.source.url(std::path::Path::new("")).is_some();
+    let came = match viewer.shown.as_ref().is_some_and(is_site) {
+        true => format!(" · {} bytes came", grouped(viewer.bytes() as u64)),
+        false => String::new(),
+    };
+    format!("{time}{} triangles · {bound}{came}", grouped(last.triangles as u64))
 }
 
 /// A whole number with commas between groups of three digits.
@@ -132,10 +144,14 @@ fn picture(viewer: &mut Viewer, ui: &mut Ui) {
     let wiper = wiper(viewer, ui, rect);
     move_camera(viewer, ui, &response, Picture { rect, size });
     paint_picture(viewer, ui, rect);
-    if let Some(shown) = &viewer.shown {
+    if let Some(shown) = &mut viewer.shown {
         let painter = ui.painter_at(rect);
         let camera = shown.camera(size);
         let on = Projected { camera: &camera, rect };
+        if viewer.settings.wires {
+            let seen = shown.stage.seen().cloned();
+            viewer.wires = paint_wires(&painter, on, &shown.stage.world, seen.as_ref());
+        }
         if viewer.settings.bounds {
             overlay::paint_bounds(&painter, on, &shown.stage.world);
         }

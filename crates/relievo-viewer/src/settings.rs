@@ -45,6 +45,8 @@ pub struct Settings {
     pub drag: Drag,
     /// Whether bounding boxes are painted.
     pub bounds: bool,
+    /// Whether the edges of triangles are painted.
+    pub wires: bool,
     /// Whether the bones of the chosen character are painted.
     pub bones: bool,
     /// Bits a second at which files arrive; `None` for no limit.
@@ -61,6 +63,7 @@ impl Default for Settings {
             colors: Colors::Shaded,
             drag: Drag::Orbit,
             bounds: false,
+            wires: false,
             bones: false,
             throttle: None,
             recent: Vec::new(),

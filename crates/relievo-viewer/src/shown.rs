@@ -19,6 +19,7 @@ use crate::load::{Known, Ready};
 use crate::overlay;
 use crate::source::Source;
 use crate::stage::{Colors, Stage};
+use crate::streaming::{PackageState, Streaming};
 
 /// Largest number of characters among which the nearest is chosen.
 const MOST_CHOICES: usize = 500;
@@ -41,6 +42,8 @@ pub struct Shown {
     pub(crate) document: Document,
     pub(crate) known: Known,
     pub(crate) source: Arc<dyn Source>,
+    /// What the scene still fetches; `None` for one whose files were read whole.
+    pub(crate) streaming: Option<Streaming>,
     /// The scene on the device.
     pub stage: Stage,
     /// The same scene in full detail, while both are compared.
@@ -79,7 +82,7 @@ pub struct Shown {
 
 impl Shown {
     pub(crate) fn new(name: String, ready: Ready) -> Result<Self, Error> {
-        let Ready { document, known, stage, eye, extent, source } = ready;
+        let Ready { document, known, stage, eye, extent, source, streaming } = ready;
         let world = &stage.world;
         let own = world.objects.iter().map(|object| world.scene.level_of_detail(object.object).cloned());
         let own = own.collect::<Result<_, InputError>>()?;
@@ -89,6 +92,7 @@ impl Shown {
             name,
             known,
             source,
+            streaming,
             full: None,
             eye,
             home: eye,
@@ -116,6 +120,7 @@ impl Shown {
         let other = Self::new(self.name.clone(), ready)?;
         self.document = other.document;
         self.known = other.known;
+        self.streaming = other.streaming;
         self.stage = other.stage;
         self.own = other.own;
         (self.applied, self.chosen, self.full) = (None, None, None);
@@ -137,6 +142,36 @@ impl Shown {
         }
         self.full = Some(full);
         Ok(())
+    }
+
+    /// Shows what has arrived of a scene of a site, and asks for what the picture needs.
+    ///
+    /// # Errors
+    /// [`Error`] for packages that do not suit the scene, and of the device.
+    pub(crate) async fn stream(&mut self, rate: Option<f64>) -> Result<(), Error> {
+        let Some(streaming) = &mut self.streaming else { return Ok(()) };
+        streaming.set_rate(rate);
+        self.stage.stream(streaming).await?;
+        let world = &self.stage.world;
+        for object in &world.objects[self.own.len()..] {
+            self.own.push(world.scene.level_of_detail(object.object)?.clone());
+        }
+        Ok(())
+    }
+
+    /// Whether something is still fetched that the picture needs.
+    pub fn is_streaming(&self) -> bool {
+        self.streaming.as_ref().is_some_and(|streaming| !streaming.is_settled())
+    }
+
+    /// The packages of a scene of a site, as far as they are there. Empty for a scene whose files were read whole.
+    pub fn packages(&self) -> Vec<PackageState> {
+        self.streaming.as_ref().map(Streaming::packages).unwrap_or_default()
+    }
+
+    /// Why nothing comes from the scene's site, and the seconds until it is asked again; `None` while it answers.
+    pub fn waits(&self) -> Option<(String, f64)> {
+        self.streaming.as_ref()?.waits()
     }
 
     /// The scene's time in seconds.
@@ -294,9 +329,16 @@ impl Shown {
         }
         if !self.levels.is_own() {
             let world = &self.stage.world;
-            let objects = world.objects.iter().filter(|object| object.kind != WorldKind::Terrain);
-            for (at, object) in objects.enumerate() {
-                if let Ok(lod) = world.scene.level_of_detail(object.object) {
+            // Objects whose packages arrived later are not in the order of the file.
+            let mut left: Vec<_> =
+                world.objects.iter().filter(|object| object.kind != WorldKind::Terrain).collect();
+            for (at, name) in document.names().into_iter().enumerate() {
+                let own = match &self.streaming {
+                    Some(_) => left.iter().position(|object| Some(&object.name) == name.as_ref()),
+                    None => Some(0),
+                };
+                let Some(own) = own.filter(|own| *own < left.len()) else { continue };
+                if let Ok(lod) = world.scene.level_of_detail(left.remove(own).object) {
                     document.set_level_of_detail(at, self.levels.json(lod));
                 }
             }

@@ -8,6 +8,9 @@ use std::pin::Pin;
 use std::sync::Arc;
 
 use relievo::InputError;
+#[cfg(not(target_arch = "wasm32"))]
+use relievo_delivery::client::FetchError;
+use relievo_delivery::client::beside;
 
 /// The bytes of a file, once they are there.
 pub type Reading<'a> = Pin<Box<dyn Future<Output = io::Result<Arc<[u8]>>> + 'a>>;
@@ -16,6 +19,11 @@ pub type Reading<'a> = Pin<Box<dyn Future<Output = io::Result<Arc<[u8]>>> + 'a>>
 pub trait Source: wgpu::WasmNotSendSync {
     /// Reads a whole file.
     fn read<'a>(&'a self, name: &'a Path) -> Reading<'a>;
+
+    /// The absolute address of a file, for sources that are sites: packages come from there level by level.
+    fn url(&self, _name: &Path) -> Option<String> {
+        None
+    }
 }
 
 /// Files below a folder.
@@ -54,50 +62,93 @@ impl Source for Memory {
     }
 }
 
-/// Files of a site, read by the browser.
-#[cfg(target_arch = "wasm32")]
+/// Files of a site, by HTTP.
 #[derive(Debug, Clone)]
 pub struct Site {
-    /// Address of the first file's folder, absolute or relative to the page, with a slash at its end; or nothing.
-    pub base: String,
+    /// The absolute address of the first file.
+    pub url: String,
+}
+
+impl Source for Site {
+    fn read<'a>(&'a self, name: &'a Path) -> Reading<'a> {
+        let url = beside(&self.url, name);
+        #[cfg(target_arch = "wasm32")]
+        return Box::pin(async move { Ok(crate::web::fetched(&url).await?.into()) });
+        #[cfg(not(target_arch = "wasm32"))]
+        Box::pin(async move {
+            let got = relievo_delivery::client::get(&url, None);
+            got.map(Into::into).map_err(|error| match error {
+                // The name of the file comes before it.
+                FetchError::Status { status, .. } => io::Error::other(format!("the server answers {status}")),
+                FetchError::Network { reason, .. } => io::Error::other(reason),
+                error => io::Error::other(error),
+            })
+        })
+    }
+
+    fn url(&self, name: &Path) -> Option<String> {
+        Some(beside(&self.url, name))
+    }
+}
+
+/// Scenes that the viewer brings along, whose packages lie beside the page.
+#[cfg(target_arch = "wasm32")]
+#[derive(Debug, Clone)]
+pub(crate) struct Bundled {
+    /// The scenes.
+    pub own: Memory,
+    /// The page.
+    pub page: Site,
 }
 
 #[cfg(target_arch = "wasm32")]
-impl Source for Site {
+impl Source for Bundled {
     fn read<'a>(&'a self, name: &'a Path) -> Reading<'a> {
-        Box::pin(
-            async move { Ok(crate::web::fetched(&format!("{}{}", self.base, name.display())).await?.into()) },
-        )
+        if self.own.0.contains_key(name) { self.own.read(name) } else { self.page.read(name) }
     }
+
+    fn url(&self, name: &Path) -> Option<String> {
+        self.page.url(name)
+    }
+}
+
+/// The source of an absolute address.
+fn site(url: String) -> (String, Arc<dyn Source>) {
+    let path = url.split(['?', '#']).next().unwrap_or_default();
+    let name = path.rsplit('/').next().unwrap_or_default().to_owned();
+    (name, Arc::new(Site { url }))
 }
 
 /// Finds the source of an address that somebody wrote: the name of the file, and where it is.
 pub type Locate = fn(&str) -> Result<(String, Arc<dyn Source>), InputError>;
 
-/// Finds a file by its path.
+/// Finds a file by its path, or by the address of a site (`http://`, `https://`).
 ///
 /// # Errors
-/// [`InputError`] for the address of a site, and for a path without a file's name.
+/// [`InputError`] for other addresses, and for a path without a file's name.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn locate(address: &str) -> Result<(String, Arc<dyn Source>), InputError> {
-    if address.contains("://") {
-        return Err(InputError::new("address", address, "must be the path of a file"));
+    let refused = |bound: &str| InputError::new("address", address, bound);
+    match address.split_once("://") {
+        Some(("http" | "https", _)) => return Ok(site(address.to_owned())),
+        Some(_) => return Err(refused("must be the path of a file, or begin with http:// or https://")),
+        None => {}
     }
     let path = Path::new(address);
-    let refused = || InputError::new("address", address, "must end in the name of a file");
-    let name = path.file_name().ok_or_else(refused)?.to_string_lossy().into_owned();
+    let name = path.file_name().ok_or_else(|| refused("must end in the name of a file"))?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    Ok((name, Arc::new(Folder(folder))))
+    Ok((name.to_string_lossy().into_owned(), Arc::new(Folder(folder))))
 }
 
 /// Finds a file by its address, absolute or relative to the page.
 ///
 /// # Errors
-/// None: the browser refuses what it cannot read.
+/// [`InputError`] for what is no address.
 #[cfg(target_arch = "wasm32")]
 pub fn locate(address: &str) -> Result<(String, Arc<dyn Source>), InputError> {
-    let end = address.rfind('/').map_or(0, |slash| slash + 1);
-    Ok((address[end..].to_owned(), Arc::new(Site { base: address[..end].to_owned() })))
+    let refused =
+        || InputError::new("address", address, "must be an address, absolute or relative to the page");
+    crate::web::absolute(address).map(site).ok_or_else(refused)
 }
 
 /// Limits how fast the bytes of another source arrive.
@@ -123,10 +174,10 @@ impl Throttled<'_> {
 }
 
 #[cfg(not(target_arch = "wasm32"))]
-async fn sleep(seconds: f64) {
+pub(crate) async fn sleep(seconds: f64) {
     // A task that loads has a thread of its own.
     std::thread::sleep(std::time::Duration::from_secs_f64(seconds));
 }
 
 #[cfg(target_arch = "wasm32")]
-use crate::web::sleep;
+pub(crate) use crate::web::sleep;

@@ -6,6 +6,8 @@ use relievo::scene::{Camera, Rebuild, View, ViewStatistics};
 use relievo::scene_file::{SunOptions, World, WorldKind};
 use relievo::{Error, InputError};
 
+use crate::streaming::Streaming;
+
 /// Samples per pixel of pictures.
 const SAMPLES: u32 = 4;
 
@@ -66,6 +68,24 @@ impl Stage {
             Some((shadow, _)) => shadow.prepare(&self.world.scene),
             None => Ok(()),
         }
+    }
+
+    /// Shows what has arrived of a scene of a site, and asks for what the last picture needs.
+    ///
+    /// # Errors
+    /// As for [`Streaming::update`].
+    pub(crate) async fn stream(&mut self, streaming: &mut Streaming) -> Result<(), Error> {
+        let views = [&self.view];
+        let views = if self.view.camera().is_some() { &views[..] } else { &[] };
+        if streaming.update(&mut self.world, views).await? {
+            let Self { world, shadow, shaded, levels, .. } = self;
+            shaded.prepare_async(&world.scene).await?;
+            levels.prepare_async(&world.scene).await?;
+            if let Some((shadow, _)) = shadow {
+                shadow.prepare_async(&world.scene).await?;
+            }
+        }
+        Ok(())
     }
 
     /// The device.

@@ -6,6 +6,10 @@ use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, Stroke,
 
 use crate::settings;
 
+/// Letters of the typeface Inter (SIL Open Font License: `fonts/Inter-LICENSE.txt`): Latin, Greek, and the signs of the panel. All of
+/// its letters would be a tenth of the page.
+const LETTERS: &[u8] = include_bytes!("../fonts/Inter-letters.otf");
+
 /// The colour of what is active: links, sliders, selected text.
 pub const ACCENT: Color32 = Color32::from_rgb(0x3d, 0x8b, 0xd6);
 
@@ -37,7 +41,7 @@ pub fn dress(egui: &egui::Context, theme: settings::Theme) {
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
     let name = "letters".to_owned();
-    let letters = FontData::from_static(epaint_default_fonts::UBUNTU_LIGHT);
+    let letters = FontData::from_static(LETTERS);
     fonts.font_data.insert(name.clone(), Arc::new(letters));
     for family in [FontFamily::Proportional, FontFamily::Monospace] {
         fonts.families.insert(family, vec![name.clone()]);

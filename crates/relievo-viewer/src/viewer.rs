@@ -9,6 +9,7 @@ use std::time::Duration;
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use relievo::gpu::{Gpu, GpuError};
 use relievo::{Error, InputError};
+use relievo_lab::measure::DistanceSweepReport;
 use web_time::Instant;
 
 use crate::experiment::Experiment;
@@ -20,6 +21,8 @@ use crate::shown::Shown;
 use crate::source::{Locate, Memory, Source, locate};
 use crate::stage::{Colors, Stage};
 use crate::start::Start;
+use crate::streaming::Streaming;
+use crate::wires::Wires;
 use crate::{panel, theme};
 
 /// Seconds without input after which nothing is drawn any more, unless the camera follows a path.
@@ -135,6 +138,8 @@ pub struct Viewer {
     /// Bytes and seconds until the first picture.
     pub(crate) first_picture: Option<(usize, f64)>,
     pub(crate) picture: Option<Picture>,
+    /// The edges that were painted last.
+    pub(crate) wires: Wires,
     /// The place of the wiper between full detail and the present one, as a fraction of the picture's width.
     pub(crate) wiper: f32,
     /// Whether the scene is compared with full detail.
@@ -182,6 +187,7 @@ impl Viewer {
             experiment: Experiment::default(),
             first_picture: None,
             picture: None,
+            wires: Wires::default(),
             wiper: 0.5,
             compares: false,
             bookmarks: [None; 9],
@@ -258,6 +264,11 @@ impl Viewer {
         Some(self.picture?.size)
     }
 
+    /// The edges of triangles that were painted last.
+    pub fn wires(&self) -> &Wires {
+        &self.wires
+    }
+
     /// Bytes that had arrived at the first picture, and the seconds until then.
     pub fn first_picture(&self) -> Option<(usize, f64)> {
         self.first_picture
@@ -303,8 +314,14 @@ impl Viewer {
     /// Opens one of the scenes that the viewer brings along.
     pub(crate) fn open_example(&mut self, number: usize) {
         let (name, text, _) = panel::EXAMPLES[number];
-        let source = Memory::default().with(name, text.as_bytes());
-        self.open(name, Arc::new(source));
+        // A page has the creature as a package beside it.
+        #[cfg(target_arch = "wasm32")]
+        if let Some(url) = crate::web::absolute(name) {
+            let (own, page) = (Memory::default().with(name, text.as_bytes()), crate::source::Site { url });
+            return self.open(name, Arc::new(crate::source::Bundled { own, page }));
+        }
+        let text = text.replace("creature.rlv", "builtin:creature");
+        self.open(name, Arc::new(Memory::default().with(name, text.into_bytes())));
     }
 
     /// Opens files that were dropped: the first one that can be shown, with the others beside it.
@@ -326,7 +343,12 @@ impl Viewer {
 
     fn load(&mut self, purpose: Purpose, name: PathBuf, source: Arc<dyn Source>, changed: Option<Changed>) {
         let shown = name.display().to_string();
-        let job = Job { gpu: self.gpu.clone(), name, source, rate: self.settings.throttle, changed };
+        let fetching = match (purpose, &mut self.shown) {
+            (Purpose::Rebuild, Some(shown)) => shown.streaming.take().map(Streaming::into_fetching),
+            _ => None,
+        };
+        let job =
+            Job { gpu: self.gpu.clone(), name, source, rate: self.settings.throttle, changed, fetching };
         let egui = self.egui.clone();
         let task = Task::start(job, move || egui.request_repaint());
         self.loading = Some(Loading { task, purpose, name: shown, step: "starting".to_owned() });
@@ -351,6 +373,13 @@ impl Viewer {
         let seconds = self.tick(&input);
         self.update_loading();
         self.experiment.update();
+        #[cfg(not(target_arch = "wasm32"))]
+        if self.is_streaming() {
+            let gpu = self.gpu.clone();
+            if let Err(error) = gpu.block_on(self.stream()) {
+                self.notice = Some(error.to_string());
+            }
+        }
         if let Err(error) = self.advance(seconds) {
             self.notice = Some(error.to_string());
         }
@@ -369,6 +398,35 @@ impl Viewer {
         Output { platform: full.platform_output, wait }
     }
 
+    /// Whether the scene comes from a site, level by level, and something may still come.
+    pub fn is_streaming(&self) -> bool {
+        !self.is_resting && self.shown.as_ref().is_some_and(|shown| shown.streaming.is_some())
+    }
+
+    /// Shows what has arrived of a scene of a site. [`Viewer::frame`] calls it natively. A page calls it between frames, because a
+    /// browser tells errors of the device later.
+    ///
+    /// # Errors
+    /// [`Error`] for packages that do not suit the scene, and of the device.
+    pub async fn stream(&mut self) -> Result<(), Error> {
+        let Self { shown: Some(shown), settings, arrivals, .. } = self else { return Ok(()) };
+        let done = shown.stream(settings.throttle).await;
+        if let Some(streaming) = &mut shown.streaming {
+            arrivals.extend(streaming.arrivals());
+            if let Some(why) = streaming.failures().into_iter().next() {
+                self.notice = Some(why);
+            }
+        }
+        done
+    }
+
+    /// Number of bytes that arrived since the viewer began, used or not.
+    pub fn bytes(&self) -> usize {
+        let ended: usize = self.arrivals.iter().map(|arrival| arrival.bytes).sum();
+        let streaming = self.shown.iter().flat_map(|shown| &shown.streaming);
+        ended + streaming.flat_map(Streaming::asked).map(|asked| asked.bytes).sum::<usize>()
+    }
+
     /// The seconds since the last frame.
     fn tick(&mut self, input: &egui::RawInput) -> f64 {
         let now = input.time.unwrap_or(self.now + f64::from(input.predicted_dt));
@@ -378,7 +436,10 @@ impl Viewer {
         if is_input || self.last_input == 0.0 {
             self.last_input = now;
         }
-        let is_whole = self.shown.as_ref().is_none_or(|shown| shown.stage.ready() == 1.0);
+        let is_whole = self.shown.as_ref().is_none_or(|shown| {
+            let is_fetching = shown.is_streaming() && shown.waits().is_none();
+            shown.stage.ready() == 1.0 && !is_fetching
+        });
         self.is_resting = now - self.last_input > REST && !self.is_on_path() && is_whole;
         seconds
     }
@@ -407,7 +468,7 @@ impl Viewer {
         if is_moving || shown.stage.ready() < 1.0 || self.steps || self.wants_picture {
             return Some(Duration::ZERO);
         }
-        if self.loading.is_some() || self.experiment.is_running() {
+        if self.loading.is_some() || self.experiment.is_running() || shown.is_streaming() {
             return Some(repaint.min(Duration::from_millis(50)));
         }
         (repaint < Duration::MAX).then_some(repaint)
@@ -484,6 +545,8 @@ impl Viewer {
             self.load(Purpose::Rebuild, name, source, Some(Changed { document, known }));
         } else if self.compares && shown.full.is_none() {
             let mut document = shown.document.clone();
+            let mut known = known;
+            known.add_files(shown.streaming.iter().flat_map(Streaming::whole));
             document.set_characters("gate", Some(&serde_json::json!("off")));
             document.set_characters("influences", Some(&serde_json::json!({ "most": 8 })));
             document.set_characters("tiers", None);
@@ -604,7 +667,8 @@ impl Viewer {
             self.last_paint.replace(now).map_or(0.0, |last| 1e3 * now.duration_since(last).as_secs_f64());
         let device = f32::from_bits(self.device_time.load(Ordering::Acquire));
         shown.stage.view_mut().frame_took(device.max(record as f32))?;
-        let bytes = self.arrivals.iter().map(|arrival| arrival.bytes).sum::<usize>();
+        let bytes = self.bytes();
+        let Some(shown) = &mut self.shown else { return Ok(()) };
         if self.first_picture.is_none() {
             self.first_picture = Some((bytes, self.began.elapsed().as_secs_f64()));
         }
@@ -660,6 +724,18 @@ impl Viewer {
         return Some(format!("{}?{}", crate::web::address(), start.query()));
         #[cfg(not(target_arch = "wasm32"))]
         Some(start.command(self.picture?.size))
+    }
+
+    /// Starts the experiment of thesis A at some distances, as the button of the panel does.
+    pub fn run_experiment(&mut self) {
+        self.start_experiment(panel::quick());
+    }
+
+    /// Number of measurements of the last experiment, or why there are none; `None` while it runs, and before the first.
+    pub fn experiment_rows(&self) -> Option<Result<usize, &str>> {
+        let result = self.experiment.result.as_ref()?;
+        let rows = |report: &DistanceSweepReport| report.layouts.iter().map(|layout| layout.rows.len()).sum();
+        Some(result.as_ref().map(rows).map_err(String::as_str))
     }
 
     /// Starts the experiment.

@@ -58,6 +58,11 @@ pub fn start() {
     events.spawn_app(Page { proxy, running: None });
 }
 
+/// Starts the experiment, as the button of the panel does.
+pub fn experiment() {
+    WAKE.with_borrow(|proxy| proxy.iter().for_each(|proxy| _ = proxy.send_event(Told::Experiment)));
+}
+
 /// Shows in the page, and in the browser's console, why there is no picture.
 fn fail(why: &str) {
     web_sys::console::error_1(&why.into());
@@ -91,6 +96,12 @@ fn storage() -> Option<web_sys::Storage> {
 fn other(error: &JsValue) -> io::Error {
     let message = Reflect::get(error, &"message".into()).ok().and_then(|message| message.as_string());
     io::Error::other(message.unwrap_or_else(|| format!("{error:?}")))
+}
+
+/// An address in full; `None` for what is no address.
+pub(crate) fn absolute(address: &str) -> Option<String> {
+    let page = web_sys::window()?.location().href().ok()?;
+    Some(web_sys::Url::new_with_base(address, &page).ok()?.href())
 }
 
 /// Reads a whole file by its address.
@@ -133,6 +144,9 @@ enum Told {
     Failed(String),
     Dropped(Vec<(String, Arc<[u8]>)>),
     Recovered(Box<Opened>),
+    Experiment,
+    /// The viewer is back from showing what has arrived.
+    Back,
 }
 
 /// A device, and the canvas's surface configured for it.
@@ -209,6 +223,20 @@ struct Running {
     viewer: Option<Shown>,
     /// Whether another device is being opened.
     recovers: bool,
+    /// Events, and whether a frame was due, while the viewer was away.
+    missed: Vec<WindowEvent>,
+    is_due: bool,
+}
+
+impl Running {
+    /// Takes the viewer back, once it is there.
+    fn take_back(&mut self) {
+        let Some(mut shown) = BACK.with_borrow_mut(Option::take) else { return };
+        for event in self.missed.drain(..) {
+            let _ = shown.input.on_window_event(&self.window, &event);
+        }
+        self.viewer = Some(shown);
+    }
 }
 
 struct Shown {
@@ -305,8 +333,16 @@ impl Shown {
             "ready": viewer.shown().map(|shown| shown.stage.ready()),
             "triangles": last.map(|sample| sample.triangles),
             "milliseconds": last.map(|sample| sample.frame),
-            "bytes": viewer.arrivals().iter().map(|arrival| arrival.bytes).sum::<usize>(),
+            "bytes": viewer.bytes(),
+            "streams": viewer.shown().map(crate::Shown::is_streaming),
+            "waits": viewer.shown().and_then(crate::Shown::waits).map(|(why, _)| why),
+            "levels": viewer.shown().map(|shown| shown.packages().iter().map(|package| package.levels).collect::<Vec<_>>()),
+            "first_bytes": viewer.first_picture().map(|(bytes, _)| bytes),
             "first_picture": viewer.first_picture().map(|(_, seconds)| seconds),
+            "experiment": viewer.experiment_rows().map(|rows| match rows {
+                Ok(rows) => json!(rows),
+                Err(why) => json!(why),
+            }),
             "rests": viewer.is_resting(),
             "picture": viewer.picture_size(),
             "frames": viewer.shown().map(|shown| shown.stage.world.scene.frames()),
@@ -340,11 +376,16 @@ fn download(name: &str, bytes: &[u8]) -> Result<(), JsValue> {
 
 impl Page {
     fn redraw(&mut self, events: &ActiveEventLoop) {
-        let Some(Running { window, viewer: Some(shown), recovers }) = &mut self.running else { return };
+        let Some(running) = &mut self.running else { return };
+        running.take_back();
+        running.is_due = running.viewer.is_none();
+        let Running { window, viewer: Some(shown), recovers, .. } = running else { return };
         if *recovers {
             return;
         }
-        match shown.frame(window) {
+        let drawn = shown.frame(window);
+        let is_drawn = drawn.is_ok();
+        match drawn {
             Ok(Some(Duration::ZERO)) => window.request_redraw(),
             Ok(Some(wait)) => {
                 let moment = web_time::Instant::now().checked_add(wait);
@@ -367,11 +408,31 @@ impl Page {
                 window.request_redraw();
             }
         }
+        if is_drawn && shown.viewer.is_streaming() {
+            self.stream();
+        }
+    }
+
+    /// Shows what has arrived. The viewer is away as long as the browser does not tell errors, which takes no time where nothing
+    /// has arrived.
+    fn stream(&mut self) {
+        let Some(Running { viewer, .. }) = &mut self.running else { return };
+        let Some(mut shown) = viewer.take() else { return };
+        let proxy = self.proxy.clone();
+        spawn_local(async move {
+            match shown.viewer.stream().await {
+                // The next frame finds out that the device is lost.
+                Err(error) if !Viewer::is_loss(&error) => shown.viewer.tell(error.to_string()),
+                _ => {}
+            }
+            BACK.with_borrow_mut(|back| *back = Some(shown));
+            let _ = proxy.send_event(Told::Back);
+        });
     }
 
     /// Goes on with another device.
     fn recover(&mut self, opened: Opened) {
-        let Some(Running { window, viewer, recovers }) = &mut self.running else { return };
+        let Some(Running { window, viewer, recovers, .. }) = &mut self.running else { return };
         let Some(mut shown) = viewer.take() else { return };
         let (proxy, again) = (self.proxy.clone(), window.clone());
         *recovers = false;
@@ -391,7 +452,7 @@ impl Page {
 }
 
 thread_local! {
-    /// A viewer that was rebuilt on another device, and goes back to its page.
+    /// A viewer that was away, and goes back to its page.
     static BACK: RefCell<Option<Shown>> = const { RefCell::new(None) };
 }
 
@@ -415,7 +476,8 @@ impl ApplicationHandler<Told> for Page {
             };
             let _ = proxy.send_event(told);
         });
-        self.running = Some(Running { window, viewer: None, recovers: false });
+        self.running =
+            Some(Running { window, viewer: None, recovers: false, missed: Vec::new(), is_due: false });
     }
 
     fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
@@ -426,10 +488,10 @@ impl ApplicationHandler<Told> for Page {
 
     fn user_event(&mut self, _: &ActiveEventLoop, told: Told) {
         let Some(running) = &mut self.running else { return };
-        if let Some(shown) = BACK.with_borrow_mut(Option::take) {
-            running.viewer = Some(shown);
-        }
+        running.take_back();
         match told {
+            Told::Back if !std::mem::take(&mut running.is_due) => return,
+            Told::Back => {}
             Told::Wake => {}
             Told::Opened(opened) => {
                 running.viewer = Some(Shown::new(&running.window, *opened, &self.proxy));
@@ -438,6 +500,11 @@ impl ApplicationHandler<Told> for Page {
             Told::Dropped(files) => {
                 if let Some(shown) = &mut running.viewer {
                     shown.viewer.drop_files(files);
+                }
+            }
+            Told::Experiment => {
+                if let Some(shown) = &mut running.viewer {
+                    shown.viewer.run_experiment();
                 }
             }
             Told::Recovered(opened) => return self.recover(*opened),
@@ -449,7 +516,11 @@ impl ApplicationHandler<Told> for Page {
         if matches!(event, WindowEvent::RedrawRequested) {
             return self.redraw(events);
         }
-        let Some(Running { window, viewer: Some(shown), .. }) = &mut self.running else { return };
+        let Some(Running { window, viewer, missed, .. }) = &mut self.running else { return };
+        let Some(shown) = viewer else {
+            missed.push(event);
+            return;
+        };
         let is_resized = matches!(event, WindowEvent::Resized(_));
         if shown.input.on_window_event(window, &event).repaint || is_resized {
             window.request_redraw();

@@ -77,8 +77,15 @@ impl Viewer {
             shown.record(&mut encoder, size, colors)?;
             gpu.scoped(|| gpu.queue().submit([encoder.finish()]))?;
             gpu.wait()?;
-            if shown.stage.ready() == 1.0 {
+            if shown.stage.ready() == 1.0 && !shown.is_streaming() {
                 break;
+            }
+            while shown.is_streaming() {
+                if let Some((why, _)) = shown.waits() {
+                    return Err(InputError::new("scene", "not whole", why).into());
+                }
+                gpu.block_on(shown.stream(None))?;
+                std::thread::sleep(Duration::from_millis(2));
             }
         }
         match shown.stage.target(colors) {

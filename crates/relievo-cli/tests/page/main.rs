@@ -1,16 +1,18 @@
 //! The viewer's page in headless Chromium: its picture beside the native one on the same software adapter, what its console says,
 //! keys, mistakes, and two pages at once.
 
+mod verify;
+
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::sync::OnceLock;
+use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 use base64::Engine as _;
 use image::RgbaImage;
 use image::imageops::crop_imm;
 use relievo_testing::wasm::Program;
-use relievo_testing::{Difference, browser};
+use relievo_testing::{Difference, browser, wasm};
 use serde_json::{Value, json};
 
 /// A folder with a page that `make web` has built. Without the variable, the tests build one that is larger and slower.
@@ -30,66 +32,148 @@ const SCENE: &str = r#"{
   "quality": { "pixels": 2 }
 }"#;
 
+/// One browser at a time: each uses all processors.
+static ALONE: Mutex<()> = Mutex::new(());
+
 /// Sizes of the frames in CSS pixels.
 const SIZES: [[u32; 2]; 2] = [[480, 360], [301, 223]];
 
+/// A scene of a server, whose packages come level by level.
+const STREAMED: &str = r#"{
+  "meshes": [{ "file": "rock.rlv", "instances": [{ "at": [2, 0, 0] }, { "at": [-2, 0, -1] }] }],
+  "characters": [{ "file": "creature.rlv", "instances": [{ "at": [0, 0, 0] }] }],
+  "camera": { "at": [0, 2, 6], "look": [0, 0.8, 0] },
+  "quality": { "pixels": 0.05 }
+}"#;
+
 struct Page {
-    /// What the page said of each case.
-    said: Value,
+    /// What the page said of each case, at a pixel ratio of 1 and of 2.
+    said: [Value; 2],
     /// The folder of the scene and its files.
     folder: tempfile::TempDir,
+    /// Bytes of WebAssembly and JavaScript with brotli.
+    packed: usize,
+}
+
+/// `relievo serve` with the streamed scene, which ends with the value.
+struct Server(Child);
+
+impl Server {
+    fn start(folder: &Path, port: u16) -> Self {
+        let child = Command::new(env!("CARGO_BIN_EXE_relievo"))
+            .current_dir(folder)
+            .args(["serve", "--models", "served", "--scene", "served/walk.json", "--listen"])
+            .arg(format!("127.0.0.1:{port}"))
+            .stdout(Stdio::null())
+            .spawn();
+        let server = Self(child.expect("started"));
+        let start = Instant::now();
+        while std::net::TcpStream::connect(("127.0.0.1", port)).is_err() {
+            assert!(start.elapsed() < Duration::from_secs(60), "the server does not listen");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        server
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A built-in model as a package.
+fn package(name: &str) -> Vec<u8> {
+    let model = relievo_samples::model(name).expect("built in").into();
+    let package = relievo::ops::skinning::cook(&model, &mut |_| std::ops::ControlFlow::Continue(()));
+    package.expect("cooked").expect("not broken off")
+}
+
+/// The cases at a pixel ratio of 1.
+fn plan(port: u16) -> Vec<Value> {
+    let case =
+        |name: &str, query: &str, size: [u32; 2]| json!({ "name": name, "query": query, "size": size });
+    let site = format!("scene=http://127.0.0.1:{port}/scenes/walk.json&time=0");
+    let mut plan = vec![
+        case("large", "scene=/scene.json&time=0", SIZES[0]),
+        case("small", "scene=/scene.json&time=0", SIZES[1]),
+        case("own", "", [320, 240]),
+        case("mistake", "scene=/mistake.json", [320, 240]),
+        case("gone", "scene=/there/is/no.glb", [320, 240]),
+        case("streamed", &site, [320, 240]),
+        case("dies", &site, [320, 240]),
+        case("experiment", "scene=/rock.rlv", [320, 240]),
+    ];
+    plan[0]["key"] = json!(["KeyL", "l"]);
+    plan[0]["stays"] = json!(true);
+    plan[1]["stays"] = json!(true);
+    plan[1]["loses"] = json!(true);
+    // Its detail takes long on a software adapter.
+    plan[2]["partial"] = json!(true);
+    plan[3]["fails"] = json!(true);
+    plan[4]["fails"] = json!(true);
+    plan[5]["streams"] = json!(true);
+    plan[6]["streams"] = json!(true);
+    plan[6]["dies"] = json!(true);
+    plan[7]["experiment"] = json!(true);
+    plan
 }
 
 fn page() -> &'static Page {
     static PAGE: OnceLock<Page> = OnceLock::new();
     PAGE.get_or_init(|| {
+        let _alone = ALONE.lock();
         let folder = tempfile::tempdir().expect("a temporary folder");
         let built = built(&folder.path().join("page"));
         let read = |path: PathBuf| std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        // The console's errors are kept from the first script on.
-        let hook = "<script>window.said = []; for (const kind of ['error', 'warn']) { const own = console[kind]; \
+        // The console's errors are kept from the first script on, and devices, so that they can be lost.
+        let hook = "<script>window.said = []; window.devices = []; for (const kind of ['error', 'warn']) { const own = console[kind]; \
             console[kind] = (...all) => { window.said.push(kind + ': ' + all.join(' ')); own(...all); }; } \
-            window.addEventListener('error', (event) => window.said.push(event.message));</script>\n";
+            window.addEventListener('error', (event) => window.said.push('error: ' + event.message)); \
+            const own = GPUAdapter.prototype.requestDevice; GPUAdapter.prototype.requestDevice = async function (...all) { \
+            const device = await own.apply(this, all); window.devices.push(device); return device; };</script>\n";
         let index = include_str!("../../../relievo-viewer/web/index.html");
         let index = index.replacen("<script type=\"module\">", &format!("{hook}<script type=\"module\">"), 1);
-        let rock = relievo_samples::rock().expect("built in").into();
-        let rock = relievo::ops::skinning::cook(&rock, &mut |_| std::ops::ControlFlow::Continue(()));
-        let rock = rock.expect("cooked").expect("not broken off");
+        let [rock, creature] = ["rock", "creature"].map(package);
         std::fs::write(folder.path().join("rock.rlv"), &rock).expect("written");
         std::fs::write(folder.path().join("scene.json"), SCENE).expect("written");
-        let case = |name: &str, query: &str, size: [u32; 2]| json!({ "name": name, "query": query, "size": size });
-        let mut plan = vec![
-            case("large", "scene=/scene.json&time=0", SIZES[0]),
-            case("small", "scene=/scene.json&time=0", SIZES[1]),
-            case("own", "", [320, 240]),
-            case("mistake", "scene=/mistake.json", [320, 240]),
-            case("gone", "scene=/there/is/no.glb", [320, 240]),
-        ];
-        plan[0]["key"] = json!(["KeyL", "l"]);
-        plan[0]["stays"] = json!(true);
-        plan[1]["stays"] = json!(true);
-        // Its detail takes long on a software adapter.
-        plan[2]["partial"] = json!(true);
-        plan[3]["fails"] = json!(true);
-        plan[4]["fails"] = json!(true);
-        let plan = serde_json::to_vec(&plan).expect("JSON");
+        std::fs::create_dir(folder.path().join("served")).expect("made");
+        for (name, bytes) in [("rock.rlv", &*rock), ("creature.rlv", &*creature), ("walk.json", STREAMED.as_bytes())] {
+            std::fs::write(folder.path().join("served").join(name), bytes).expect("written");
+        }
         let (script, program) = (read(built.join("viewer.js")), read(built.join("viewer_bg.wasm")));
         let mistake = SCENE.replace("\"seed\": \"page\"", "\"seed\": 7");
-        let files = [
-            ("/", include_bytes!("page.html").as_slice()),
-            ("/plan.json", plan.as_slice()),
-            ("/viewer/index.html", index.as_bytes()),
-            ("/viewer/viewer.js", script.as_slice()),
-            ("/viewer/viewer_bg.wasm", program.as_slice()),
-            ("/scene.json", SCENE.as_bytes()),
-            ("/mistake.json", mistake.as_bytes()),
-            ("/rock.rlv", rock.as_slice()),
-        ];
         let browser = browser::program().expect("the suite needs a browser");
-        let start = Instant::now();
-        let said = browser::visit(&browser, &files, Duration::from_secs(400)).expect("a result");
-        println!("{} bytes of WebAssembly; the page took {:.1} s", program.len(), start.elapsed().as_secs_f32());
-        Page { said, folder }
+        let visit = |flags: &[&str], plan: &[Value], heard: &mut dyn FnMut(&str)| {
+            let plan = serde_json::to_vec(plan).expect("JSON");
+            let files = [
+                ("/", include_bytes!("page.html").as_slice()),
+                ("/plan.json", plan.as_slice()),
+                ("/viewer/index.html", index.as_bytes()),
+                ("/viewer/viewer.js", script.as_slice()),
+                ("/viewer/viewer_bg.wasm", program.as_slice()),
+                ("/viewer/creature.rlv", creature.as_slice()),
+                ("/scene.json", SCENE.as_bytes()),
+                ("/mistake.json", mistake.as_bytes()),
+                ("/rock.rlv", rock.as_slice()),
+            ];
+            let start = Instant::now();
+            let said = browser::visit_heard(&browser, flags, &files, Duration::from_secs(1200), heard);
+            println!("the page took {:.1} s", start.elapsed().as_secs_f32());
+            said.expect("a result")
+        };
+        let port = std::net::TcpListener::bind("127.0.0.1:0").expect("a port").local_addr().expect("known").port();
+        let mut server = Some(Server::start(folder.path(), port));
+        let said = visit(&[], &plan(port), &mut |note| match note {
+            "server stop" => server = None,
+            "server start" => server = Some(Server::start(folder.path(), port)),
+            _ => {}
+        });
+        let double = [json!({ "name": "double", "query": "scene=/scene.json&time=0", "size": SIZES[1] })];
+        let double = visit(&["--force-device-scale-factor=2"], &double, &mut |_| ());
+        let packed = [&script, &program].map(|file| wasm::packed(file).expect("in memory"));
+        Page { said: [said, double], folder, packed: packed.iter().sum() }
     })
 }
 
@@ -106,10 +190,12 @@ fn built(folder: &Path) -> PathBuf {
 }
 
 fn case(name: &str) -> &'static Value {
-    let said = &page().said;
-    assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
-    let all = said.as_array().expect("cases");
-    all.iter().find(|case| case["name"] == name).unwrap_or_else(|| panic!("no case {name}"))
+    let all = page().said.iter().flat_map(|said| {
+        assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
+        said.as_array().expect("cases")
+    });
+    let found = all.filter(|case| case["name"] == name).next_back();
+    found.unwrap_or_else(|| panic!("no case {name}"))
 }
 
 /// The picture of the scene, cut out of what the canvas shows.
@@ -122,24 +208,24 @@ fn picture(shown: &Value, size: &Value) -> RgbaImage {
     crop_imm(&canvas, 0, 0, width, height).to_image()
 }
 
+/// The program in a folder, on Chromium's software adapter.
+fn swiftshader(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_relievo"));
+    command
+        .current_dir(folder)
+        .env("VK_ICD_FILENAMES", "/usr/lib/chromium/vk_swiftshader_icd.json")
+        .env("RELIEVO_ADAPTER", "swiftshader");
+    command
+}
+
 /// The same scene, drawn natively on Chromium's software adapter.
 fn native(size: [u32; 2]) -> RgbaImage {
     let folder = page().folder.path();
     let out = folder.join(format!("native-{}.png", size[0]));
-    let output = Command::new(env!("CARGO_BIN_EXE_relievo"))
-        .current_dir(folder)
-        .args([
-            "view",
-            "scene.json",
-            "--time",
-            "0",
-            "--size",
-            &format!("{}x{}", size[0], size[1]),
-            "--picture",
-        ])
+    let size = format!("{}x{}", size[0], size[1]);
+    let output = swiftshader(folder)
+        .args(["view", "scene.json", "--time", "0", "--size", &size, "--picture"])
         .arg(&out)
-        .env("VK_ICD_FILENAMES", "/usr/lib/chromium/vk_swiftshader_icd.json")
-        .env("RELIEVO_ADAPTER", "swiftshader")
         .output()
         .expect("started");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -148,8 +234,9 @@ fn native(size: [u32; 2]) -> RgbaImage {
 
 #[test]
 fn the_picture_of_the_page_is_the_native_one() {
-    for name in ["large", "small"] {
+    for (name, ratio) in [("large", 1.0), ("small", 1.0), ("double", 2.0)] {
         let case = case(name);
+        assert_eq!(case["ratio"], ratio, "{name}");
         let shown = picture(&case["picture"], &case["done"]["picture"]);
         let drawn = native([shown.width(), shown.height()]);
         let difference = Difference::of(&shown, &drawn, 3);
@@ -163,7 +250,7 @@ fn the_picture_of_the_page_is_the_native_one() {
 
 #[test]
 fn the_console_has_no_errors() {
-    for name in ["large", "small", "own"] {
+    for name in ["large", "small", "own", "streamed", "experiment", "double"] {
         let said = case(name)["said"].as_array().expect("a list");
         let errors: Vec<_> =
             said.iter().filter_map(Value::as_str).filter(|line| line.starts_with("error")).collect();
@@ -183,10 +270,76 @@ fn keys_reach_the_page() {
 #[test]
 fn a_page_without_an_address_shows_its_own_scene() {
     let case = case("own");
-    assert_eq!(case["state"]["scene"], "mountains.json");
-    assert!(case["state"]["bytes"].as_u64().is_some_and(|bytes| bytes < 100), "{}", case["state"]);
+    assert_eq!(case["state"]["scene"], "start.json");
     assert!(case["state"]["frames"].as_u64().is_some_and(|frames| frames > 0), "{}", case["state"]);
-    println!("first picture of the page's own scene after {} s", case["first"]);
+    println!(
+        "first picture of the page's own scene after {} s, {} bytes",
+        case["first"], case["state"]["first_bytes"]
+    );
+}
+
+#[test]
+fn two_pages_at_once_do_not_change_each_other() {
+    let [large, small] = ["large", "small"].map(case);
+    let again = |case: &Value| picture(&case["last"]["picture"], &case["done"]["picture"]);
+    let levels = picture(&large["after"]["picture"], &large["done"]["picture"]);
+    let still = Difference::of(&again(large), &levels, 6);
+    assert!(still.outliers < 0.001, "the larger one has the colours of levels: {still:?}");
+    let still = Difference::of(&again(small), &picture(&small["picture"], &small["done"]["picture"]), 6);
+    assert!(still.outliers < 0.001, "the smaller one has none: {still:?}");
+}
+
+#[test]
+fn a_lost_device_is_replaced() {
+    let case = case("small");
+    assert_eq!(case["recovered"]["devices"], 2);
+    let [before, after] = [&case["picture"], &case["recovered"]["picture"]]
+        .map(|shown| picture(shown, &case["done"]["picture"]));
+    let difference = Difference::of(&after, &before, 6);
+    assert!(difference.outliers < 0.001, "{difference:?}");
+    assert!(case["recovered"]["state"]["notice"].is_null(), "{}", case["recovered"]["state"]);
+}
+
+#[test]
+fn a_scene_of_a_server_comes_coarsest_first_over_two_megabits() {
+    let case = case("streamed");
+    let seen = case["watched"]["seen"].as_array().expect("levels");
+    let numbers: Vec<u64> = seen.iter().filter_map(|seen| seen[0].as_u64()).collect();
+    assert!(numbers.len() >= 4 && numbers.is_sorted(), "{seen:?}");
+    let [first, all] = ["first_bytes", "bytes"].map(|name| case["done"][name].as_f64().expect("a number"));
+    println!("first picture after {first} of {all} bytes, {} s", case["first"]);
+    assert!(4.0 * first < all, "first picture after {first} of {all} bytes");
+    let shown = picture(&case["picture"], &case["done"]["picture"]);
+    let covered = shown.pixels().filter(|pixel| *pixel != shown.get_pixel(2, 2)).count();
+    assert!(covered * 20 > shown.pixels().len(), "{covered} pixels");
+}
+
+#[test]
+fn a_server_that_dies_is_told_and_its_return_goes_on() {
+    let case = case("dies");
+    let waits = case["watched"]["waits"].as_str().expect("told");
+    assert!(waits.contains("127.0.0.1"), "{waits}");
+    let seen = case["watched"]["seen"].as_array().expect("levels");
+    let dead = seen.iter().position(|seen| seen == "dead").expect("it died");
+    assert!(dead + 1 < seen.len(), "nothing came after its return: {seen:?}");
+    let [one, other] =
+        [case, self::case("streamed")].map(|case| picture(&case["picture"], &case["done"]["picture"]));
+    let difference = Difference::of(&one, &other, 6);
+    assert!(difference.outliers < 0.001, "the picture is that of a server that lives: {difference:?}");
+}
+
+#[test]
+fn the_experiment_of_thesis_a_runs_in_the_page() {
+    // Two groups, four gates, six distances.
+    assert_eq!(case("experiment")["rows"], 2 * 4 * 6);
+}
+
+/// Only the page of `make web` is small: without `RELIEVO_PAGE`, it is one that compiles quickly.
+#[test]
+fn the_page_is_small() {
+    let Page { packed, .. } = page();
+    println!("{packed} bytes of WebAssembly and JavaScript with brotli");
+    assert!(std::env::var_os(BUILT).is_none() || *packed <= wasm::LARGEST, "{packed} bytes");
 }
 
 #[test]

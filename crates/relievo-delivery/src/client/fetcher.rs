@@ -277,6 +277,12 @@ impl<T: Transport> Fetcher<T> {
         self.models.get(model.0)?.stream.header()
     }
 
+    /// What is there of a model; `None` for one that is not the fetcher's.
+    pub fn count(&self, model: ModelKey) -> Option<Fetched> {
+        let [levels, images] = self.models.get(model.0)?.count();
+        Some(Fetched { model, levels, images })
+    }
+
     /// The bytes of a model's package up to the last chunk that is complete.
     pub fn bytes(&self, model: ModelKey) -> Vec<u8> {
         self.models.get(model.0).map_or_else(Vec::new, |entry| entry.stream.complete())
@@ -303,6 +309,11 @@ impl<T: Transport> Fetcher<T> {
     }
 
     /// What carries out the requests.
+    pub fn transport(&self) -> &T {
+        &self.transport
+    }
+
+    /// Mutable form of [`Fetcher::transport`].
     pub fn transport_mut(&mut self) -> &mut T {
         &mut self.transport
     }

@@ -82,7 +82,7 @@ pub fn joined(base: &str, path: &str) -> String {
 
 /// The address of a file that a scene file names, from the address of the scene file.
 #[cfg(feature = "scene")]
-fn url_beside(url: &str, path: &std::path::Path) -> String {
+pub fn beside(url: &str, path: &std::path::Path) -> String {
     let mut folder: Vec<&str> = url.split(['?', '#']).next().unwrap_or_default().split('/').collect();
     folder.pop();
     let path = path.to_string_lossy().replace('\\', "/");
@@ -105,11 +105,9 @@ fn is_passing(status: u16) -> bool {
 
 #[cfg(all(test, feature = "scene"))]
 mod tests {
-    use super::url_beside;
-
     #[test]
     fn files_lie_beside_the_scene_file() {
-        let beside = |url: &str, path: &str| url_beside(url, path.as_ref());
+        let beside = |url: &str, path: &str| super::beside(url, path.as_ref());
         assert_eq!(
             beside("http://a.org/w/scenes/walk.json", "../objects/1.rlv"),
             "http://a.org/w/objects/1.rlv"

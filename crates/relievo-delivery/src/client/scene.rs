@@ -1,6 +1,6 @@
 //! A scene file from a server, whose objects appear as they arrive.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -9,9 +9,9 @@ use relievo::scene::View;
 use relievo::scene_file::{BuiltIns, LoadedScene, SceneFile, World};
 use relievo::{Error, InputError};
 
+use super::beside;
 use super::fetcher::{Fetcher, FetcherOptions, FileKey, ModelKey, Want};
 use super::transport::Transport;
-use super::url_beside;
 
 /// Weight of an object that no view sees: its coarsest level is fetched after everything else, so that something is there when it
 /// comes into view.
@@ -48,11 +48,14 @@ const UNSEEN: f32 = 1e-6;
 pub struct StreamedScene<T> {
     fetcher: Fetcher<T>,
     url: String,
-    text: FileKey,
+    /// The scene file, as long as it is fetched.
+    text: Option<FileKey>,
     file: Option<SceneFile>,
     /// The files that the scene needs at once.
     files: BTreeMap<PathBuf, FileKey>,
     packages: BTreeMap<PathBuf, ModelKey>,
+    /// Packages of which something is shown.
+    shown: BTreeSet<ModelKey>,
     loaded: Option<LoadedScene>,
 }
 
@@ -60,9 +63,36 @@ impl<T: Transport> StreamedScene<T> {
     /// Begins to fetch the scene file at an address.
     pub fn open(url: &str, transport: T, options: FetcherOptions) -> Self {
         let mut fetcher = Fetcher::new(transport, options);
-        let text = fetcher.add_file(url);
-        let (file, files, packages, loaded) = Default::default();
-        Self { fetcher, url: url.to_owned(), text, file, files, packages, loaded }
+        let text = Some(fetcher.add_file(url));
+        let (file, files, packages, shown, loaded) = Default::default();
+        Self { fetcher, url: url.to_owned(), text, file, files, packages, shown, loaded }
+    }
+
+    /// A scene file that is there already, whose names are relative to `url`. What the fetcher has of its files is not fetched
+    /// again.
+    pub fn with_file(file: SceneFile, url: &str, fetcher: Fetcher<T>) -> Self {
+        let (files, packages, shown, loaded) = Default::default();
+        let url = url.to_owned();
+        let mut own = Self { fetcher, url, text: None, file: None, files, packages, shown, loaded };
+        own.set_file(file);
+        own
+    }
+
+    /// Ends with what was fetched, for another scene of the same files.
+    pub fn into_fetcher(self) -> Fetcher<T> {
+        self.fetcher
+    }
+
+    fn set_file(&mut self, file: SceneFile) {
+        for path in file.packages() {
+            let key = self.fetcher.add(&beside(&self.url, &path));
+            self.packages.insert(path, key);
+        }
+        for path in file.files().into_iter().filter(|path| !self.packages.contains_key(path)) {
+            let key = self.fetcher.add_file(&beside(&self.url, &path));
+            self.files.insert(path, key);
+        }
+        self.file = Some(file);
     }
 
     /// Takes in what has arrived, without blocking. Returns the scene once everything but its packages is there. Names with the
@@ -74,21 +104,15 @@ impl<T: Transport> StreamedScene<T> {
         self.fetcher.update(now);
         let path = PathBuf::from(&self.url);
         let in_file = |source: InputError| Error::InputFile { path: path.clone(), source };
-        if self.file.is_none() {
-            let Some(text) = self.fetcher.file(self.text).map_err(Error::from)? else { return Ok(None) };
+        if let (None, Some(text)) = (&self.file, self.text) {
+            let Some(text) = self.fetcher.file(text).map_err(Error::from)? else { return Ok(None) };
             let text = str::from_utf8(text).map_err(|error| {
                 in_file(InputError::new("scene", "bytes", format!("must be text: {error}")))
             })?;
             let file = SceneFile::from_json(text).map_err(in_file)?;
-            for path in file.packages() {
-                let key = self.fetcher.add(&url_beside(&self.url, &path));
-                self.packages.insert(path, key);
-            }
-            for path in file.files().into_iter().filter(|path| !self.packages.contains_key(path)) {
-                let key = self.fetcher.add_file(&url_beside(&self.url, &path));
-                self.files.insert(path, key);
-            }
-            self.file = Some(file);
+            self.set_file(file);
+        }
+        if self.loaded.is_none() {
             self.want(None, &[])?;
         }
         let mut contents = BTreeMap::new();
@@ -131,9 +155,13 @@ impl<T: Transport> StreamedScene<T> {
         let fetched = self.fetcher.update(now);
         let mut has_changed = false;
         for (path, key) in &self.packages {
-            let is_new = fetched.iter().any(|own| own.model == *key && own.levels > 0);
+            let is_here = self.fetcher.count(*key).is_some_and(|own| own.levels > 0);
+            let is_new = fetched.iter().any(|own| own.model == *key) || !self.shown.contains(key);
+            let is_new = is_here && is_new;
             let Some(loaded) = self.loaded.as_mut().filter(|_| is_new) else { continue };
             let in_file = |source| Error::InputFile { path: path.clone(), source };
+            // One that is refused is not tried again before it has more.
+            self.shown.insert(*key);
             let Some(model) = self.fetcher.model(*key).map_err(in_file)? else { continue };
             loaded.set_package(path, model).map_err(in_file)?;
             world.show_package_async(loaded, path).await?;
@@ -195,6 +223,6 @@ pub fn get_scene(url: &str, token: Option<&str>, built_ins: &dyn BuiltIns) -> Re
     let get = |url: &str| super::download::get_by(&agent, url, token);
     let text = String::from_utf8(get(url)?)
         .map_err(|error| in_file(InputError::new("scene", "bytes", format!("must be text: {error}"))))?;
-    let read = |path: &Path| get(&url_beside(url, path)).map_err(io::Error::other);
+    let read = |path: &Path| get(&beside(url, path)).map_err(io::Error::other);
     SceneFile::from_json(&text).and_then(|file| file.load(&read, built_ins)).map_err(in_file)
 }

@@ -5,6 +5,9 @@ use ab_glyph::{Font, FontRef, OutlineCurve, Point};
 /// Number of straight segments that replace a curve.
 const PIECES: usize = 8;
 
+/// The letters of the built-in lines, of the typeface Hack.
+const LETTERS: &[u8] = include_bytes!("../../fonts/Hack-letters.ttf");
+
 /// A line of text that is centered on a given point.
 #[derive(Debug, Clone)]
 pub struct Line {
@@ -23,8 +26,7 @@ impl Line {
     /// Lays out `text`, `width` wide including the advances of all letters, and stretched vertically by `stretch`. Capital
     /// letters are centered on `middle`.
     pub fn new(text: &str, middle: [f64; 2], width: f64, stretch: f64) -> Self {
-        let font =
-            FontRef::try_from_slice(epaint_default_fonts::HACK_REGULAR).expect("the font of the crate");
+        let font = FontRef::try_from_slice(LETTERS).expect("the font of the crate");
         let advance = |letter| f64::from(font.h_advance_unscaled(font.glyph_id(letter)));
         let scale = width / text.chars().map(advance).sum::<f64>();
         let capital = font.outline(font.glyph_id('H')).map_or(0.0, |outline| {

@@ -11,7 +11,7 @@
 //! | [`Text`](BuiltInMap::Text) | raised and carved letters: fine detail, as in B's close-ups |
 //! | [`Posts`](BuiltInMap::Posts) | posts of 2 to 4 texels at size 256, which a search in steps misses (B figure 3.6) |
 //!
-//! The letters are from the typeface Hack (MIT and Bitstream Vera licences), which the crate `epaint_default_fonts` contains.
+//! The letters are from the typeface Hack (MIT and Bitstream Vera licences: `fonts/Hack-LICENSE.txt`).
 
 use std::str::FromStr;
 

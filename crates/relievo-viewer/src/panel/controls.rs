@@ -27,7 +27,7 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
 }
 
 fn detail(viewer: &mut Viewer, ui: &mut Ui) {
-    let Viewer { shown: Some(shown), compares, settings, .. } = viewer else { return };
+    let Viewer { shown: Some(shown), compares, settings, wires, .. } = viewer else { return };
     let quality = &mut shown.quality;
     let pixels = Slider::new(&mut quality.pixels, 0.0..=64.0).logarithmic(true).smallest_positive(0.05);
     ui.add(pixels.text("pixels off").custom_formatter(|value, _| format!("{value:.2}")))
@@ -47,6 +47,13 @@ fn detail(viewer: &mut Viewer, ui: &mut Ui) {
             .on_hover_text("Red is the finest level, then orange, yellow, green, teal, blue, violet (L)");
     });
     ui.checkbox(&mut settings.bounds, "bounding boxes");
+    ui.checkbox(&mut settings.wires, "edges of triangles")
+        .on_hover_text("The edges of what is drawn, as far as they face the camera (M)");
+    if settings.wires {
+        for why in &wires.left_out {
+            ui.label(egui::RichText::new(format!("no edges: {why}")).small());
+        }
+    }
     levels(shown, ui);
     costs(shown, ui);
 }

@@ -6,7 +6,7 @@ use crate::stage::Colors;
 use crate::viewer::Viewer;
 
 /// Keys and what they do.
-const KEYS: [(&str, &str); 17] = [
+const KEYS: [(&str, &str); 18] = [
     ("drag", "orbit, fly or turn the sun, as the panel says"),
     ("right drag, Shift + drag", "move sideways"),
     ("scroll, pinch", "come nearer, go farther"),
@@ -21,6 +21,7 @@ const KEYS: [(&str, &str); 17] = [
     ("[ ]", "finer, coarser"),
     ("C", "full detail beside it"),
     ("L", "colours: shaded, levels"),
+    ("M", "edges of triangles"),
     ("B", "bones of a character"),
     ("P", "panel"),
     ("Tab", "next control of the panel"),
@@ -38,6 +39,7 @@ pub fn take(viewer: &mut Viewer, egui: &Context) {
     let toggle = |key: Key, value: &mut bool| *value ^= pressed(key);
     toggle(Key::P, &mut viewer.settings.panel);
     toggle(Key::C, &mut viewer.compares);
+    toggle(Key::M, &mut viewer.settings.wires);
     toggle(Key::B, &mut viewer.settings.bones);
     let is_asked =
         egui.input(|input| input.events.iter().any(|event| *event == egui::Event::Text("?".to_owned())));

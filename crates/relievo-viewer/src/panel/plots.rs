@@ -95,7 +95,8 @@ fn experiment(viewer: &mut Viewer, ui: &mut Ui) {
         ui.add(egui::ProgressBar::new(part).text(format!("{done} of {of}")));
     } else {
         ui.horizontal(|ui| {
-            for (label, options) in [("Run", options(true)), ("Run all distances", options(false))] {
+            for (label, options) in [("Run", quick()), ("Run all distances", DistanceSweepOptions::default())]
+            {
                 if ui.button(label).clicked() {
                     viewer.start_experiment(options);
                 }
@@ -158,17 +159,14 @@ fn sweep(ui: &mut Ui, title: &str, series: &[Series]) {
     });
 }
 
-/// The options of an experiment: all distances of the thesis, or some of them with few frames.
-fn options(is_quick: bool) -> DistanceSweepOptions {
-    match is_quick {
-        false => DistanceSweepOptions::default(),
-        true => DistanceSweepOptions {
-            distances: vec![0.0, 400.0, 900.0, 1400.0, 1800.0, 2400.0],
-            frames: 8,
-            error_frames: 3,
-            drawn_frames: 2,
-            measured: 8,
-            ..DistanceSweepOptions::default()
-        },
+/// The options of an experiment that takes little time: some distances with few frames.
+pub fn quick() -> DistanceSweepOptions {
+    DistanceSweepOptions {
+        distances: vec![0.0, 400.0, 900.0, 1400.0, 1800.0, 2400.0],
+        frames: 8,
+        error_frames: 3,
+        drawn_frames: 2,
+        measured: 8,
+        ..DistanceSweepOptions::default()
     }
 }

@@ -4,6 +4,7 @@ use egui::Ui;
 
 use super::{EXAMPLES, grouped, list, section};
 use crate::settings::Theme;
+use crate::shown::Shown;
 use crate::viewer::{Request, Viewer};
 
 /// Bits a second at which files may arrive, with their names.
@@ -118,8 +119,11 @@ fn network(viewer: &mut Viewer, ui: &mut Ui) {
     if let Some((bytes, seconds)) = viewer.first_picture {
         ui.label(format!("first picture after {} bytes, {seconds:.2} s", grouped(bytes as u64)));
     }
-    let total: usize = viewer.arrivals.iter().map(|arrival| arrival.bytes).sum();
-    ui.label(format!("{} bytes in {} files", grouped(total as u64), viewer.arrivals.len()));
+    let total = viewer.bytes();
+    ui.label(format!("{} bytes in {} transfers", grouped(total as u64), viewer.arrivals.len()));
+    if let Some(shown) = &viewer.shown {
+        site(shown, ui);
+    }
     egui::Grid::new("arrivals").num_columns(3).striped(true).show(ui, |ui| {
         for arrival in viewer.arrivals.iter().rev().take(12) {
             ui.add(egui::Label::new(short(&arrival.name)));
@@ -128,6 +132,42 @@ fn network(viewer: &mut Viewer, ui: &mut Ui) {
             ui.end_row();
         }
     });
+}
+
+/// What is there of the packages of a site, and what it is asked for.
+fn site(shown: &Shown, ui: &mut Ui) {
+    let Some(streaming) = &shown.streaming else { return };
+    if let Some((why, seconds)) = streaming.waits() {
+        ui.colored_label(ui.visuals().warn_fg_color, format!("waiting {seconds:.0} s: {why}"));
+    }
+    let traffic = streaming.traffic();
+    ui.label(format!("cached: {} bytes", grouped(traffic.kept)));
+    egui::Grid::new("packages").num_columns(3).striped(true).show(ui, |ui| {
+        for title in ["package", "levels", "images"] {
+            ui.label(egui::RichText::new(title).small());
+        }
+        ui.end_row();
+        for package in streaming.packages() {
+            ui.add(egui::Label::new(short(&package.name.display().to_string())));
+            for [here, all] in [package.levels, package.images] {
+                ui.label(format!("{here} of {all}"));
+            }
+            ui.end_row();
+        }
+    });
+    for asked in streaming.asked() {
+        let name = short(asked.url.rsplit('/').next().unwrap_or_default());
+        let of = match &asked.range {
+            Some(range) if range.end < u64::MAX => format!(" of {}", grouped(range.end - range.start)),
+            _ => String::new(),
+        };
+        ui.label(format!("asked for: {name}, {}{of} bytes", grouped(asked.bytes as u64)));
+    }
+    if shown.is_streaming() {
+        ui.spinner();
+    } else {
+        ui.label("nothing is missing that this picture needs");
+    }
 }
 
 /// The end of a long name.

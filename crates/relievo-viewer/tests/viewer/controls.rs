@@ -8,7 +8,7 @@ use relievo_viewer::{Colors, Memory, Request};
 use crate::driver::{Driver, creature, different};
 
 /// A crowd of creatures before a camera that has a path.
-const CROWD: &str = r#"{
+pub const CROWD: &str = r#"{
   "characters": [{ "file": "creature.rlv", "clip": "walk", "scatter": { "count": 10, "seed": "crowd", "area": [[-6, -16], [6, 0]] } }],
   "light": { "direction": [0.4, 0.8, 0.6] },
   "camera": { "path": [{ "time": 0, "at": [0, 3, 14], "look": [0, 1, 0] }, { "time": 4, "at": [6, 3, 14], "look": [0, 1, 0] }] },
@@ -21,7 +21,7 @@ fn files(name: &str, scene: Vec<u8>) -> Memory {
 }
 
 /// A viewer with the crowd, in a window that is high enough for all sections.
-fn crowd() -> Driver {
+pub fn crowd() -> Driver {
     let mut driver = Driver::new([580, 1400]);
     driver.viewer.open("crowd.json", Arc::new(files("crowd.json", CROWD.as_bytes().to_vec())));
     driver.settle();

@@ -166,7 +166,15 @@ impl Driver {
 
     /// Clicks on a widget.
     pub fn click(&mut self, name: &str) {
-        let at = self.rect(name).center();
+        // Sections that fold move what is below them.
+        let mut at = self.rect(name).center();
+        for _ in 0..40 {
+            self.frame();
+            let now = self.rect(name).center();
+            if std::mem::replace(&mut at, now) == now {
+                break;
+            }
+        }
         self.click_at(at);
     }
 
@@ -227,6 +235,12 @@ impl Driver {
         }
     }
 
+    /// Writes text into the widget that has the focus.
+    pub fn write(&mut self, text: &str) {
+        self.events.push(Event::Text(text.to_owned()));
+        self.frames(2);
+    }
+
     pub fn event(&mut self, event: Event) {
         self.events.push(event);
     }
@@ -269,7 +283,12 @@ impl Driver {
 fn named(node: &Node, all: &HashMap<NodeId, &Node>) -> Option<(String, (Role, Rect))> {
     let bounds = node.bounds()?;
     let by = node.labelled_by().first().and_then(|by| all.get(by)).and_then(|by| by.label().or(by.value()));
-    let name = by.or(node.label()).or(node.value())?.to_owned();
+    let name = by.or(node.label()).or(node.value()).filter(|name| !name.is_empty());
+    // The field for an address has no name before something is in it.
+    let name = match node.role() {
+        Role::TextInput => "text".to_owned(),
+        _ => name?.to_owned(),
+    };
     let [low, high] = [pos2(bounds.x0 as f32, bounds.y0 as f32), pos2(bounds.x1 as f32, bounds.y1 as f32)];
     // The text beside a widget has its name, too.
     let is_text = matches!(node.role(), Role::Label | Role::SpinButton | Role::TextRun);

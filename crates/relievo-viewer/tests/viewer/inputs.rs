@@ -88,7 +88,7 @@ fn a_scene_with_a_mistake_is_told_with_its_path_and_the_old_one_stays() {
     driver.viewer.open_address("there/is/no.glb");
     driver.settle();
     assert!(driver.viewer.notice().expect("a message").contains("no.glb: "));
-    driver.viewer.open_address("https://there.is/a.glb");
+    driver.viewer.open_address("ftp://there.is/a.glb");
     assert!(driver.viewer.notice().expect("a message").contains("must be the path of a file"));
 }
 

@@ -5,3 +5,7 @@ mod controls;
 mod driver;
 mod inputs;
 mod life;
+mod looks;
+mod panel;
+mod session;
+mod site;

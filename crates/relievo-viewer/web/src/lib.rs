@@ -15,3 +15,9 @@ pub fn start() {
 pub fn state() -> String {
     relievo_viewer::web::state()
 }
+
+/// Starts the experiment, as the button of the panel does.
+#[wasm_bindgen]
+pub fn experiment() {
+    relievo_viewer::web::experiment();
+}
