@@ -28,7 +28,7 @@ test-page: browser
 
 # The server with its models in an object store: moto, which comes from PyPI.
 test-s3: setup
-	scripts/s3.sh $(CARGO) test -p relievo-delivery --features s3 --test s3
+	scripts/s3.sh $(CARGO) test --features relievo-delivery/s3 --test s3
 
 # The demo's scene in the viewer, with a window.
 view: adapter

@@ -38,6 +38,11 @@ impl Store {
             return Err(refused(bound).into());
         }
         let address = place.parse().map_err(|error| refused(format!("must be an address: {error}")))?;
+        #[cfg(feature = "s3")]
+        {
+            // One that the program has installed already stays.
+            let _ = rustls::crypto::ring::default_provider().install_default();
+        }
         // Credentials, region and endpoint come from the usual variables of the environment (`AWS_…`).
         let settings = std::env::vars().map(|(name, value)| (name.to_ascii_lowercase(), value));
         let settings = settings.filter(|(name, _)| name.starts_with("aws_"));
