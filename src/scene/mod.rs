@@ -10,6 +10,7 @@
 //! call [`Scene::health`] once a frame. Functions without that ending do the same work, but their errors surface in a
 //! later call. `Scene::add_terrain` and `Scene::read_ground` wait, so a browser has only their `_async` forms.
 
+mod arrival;
 mod attach;
 mod bounds;
 pub(crate) mod caller_text;

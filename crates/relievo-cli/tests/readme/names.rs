@@ -99,6 +99,7 @@ fn members() {
     let _ = TargetFormat::of_output; // TargetFormat::of_output
     let _ = Scene::draws; // Scene::draws
     let _ = Scene::health; // Scene::health
+    let _ = Scene::is_refining; // Scene::is_refining
     let _ = Scene::keep_motion_history; // Scene::keep_motion_history
     let _ = Scene::set_material; // Scene::set_material
     let _ = Scene::set_level_of_detail; // Scene::set_level_of_detail
