@@ -31,6 +31,9 @@ const REST: f64 = 60.0;
 /// Largest number of frames that the device has not finished.
 const IN_FLIGHT: u32 = 2;
 
+/// Number of frames after a change: the device tells only some frames later what it drew.
+const TOLD: u32 = 8;
+
 /// Longest step of the scene's time, in seconds.
 const LONGEST: f64 = 0.25;
 
@@ -157,6 +160,8 @@ pub struct Viewer {
     now: f64,
     last_input: f64,
     is_resting: bool,
+    /// Frames that are still due after the last change.
+    due: u32,
     began: Instant,
     last_paint: Option<Instant>,
     in_flight: Arc<AtomicU32>,
@@ -199,6 +204,7 @@ impl Viewer {
             now: 0.0,
             last_input: 0.0,
             is_resting: false,
+            due: TOLD,
             began: Instant::now(),
             last_paint: None,
             in_flight: Arc::default(),
@@ -409,10 +415,12 @@ impl Viewer {
     /// # Errors
     /// [`Error`] for packages that do not suit the scene, and of the device.
     pub async fn stream(&mut self) -> Result<(), Error> {
-        let Self { shown: Some(shown), settings, arrivals, .. } = self else { return Ok(()) };
+        let Self { shown: Some(shown), settings, arrivals, due, .. } = self else { return Ok(()) };
+        let before = arrivals.len();
         let done = shown.stream(settings.throttle).await;
         if let Some(streaming) = &mut shown.streaming {
             arrivals.extend(streaming.arrivals());
+            *due = if arrivals.len() > before { TOLD } else { *due };
             if let Some(why) = streaming.failures().into_iter().next() {
                 self.notice = Some(why);
             }
@@ -433,8 +441,9 @@ impl Viewer {
         let seconds = (now - self.now).clamp(0.0, LONGEST);
         self.now = now;
         let is_input = !input.events.is_empty() || !input.dropped_files.is_empty();
+        self.due = self.due.saturating_sub(1);
         if is_input || self.last_input == 0.0 {
-            self.last_input = now;
+            (self.last_input, self.due) = (now, TOLD);
         }
         let is_whole = self.shown.as_ref().is_none_or(|shown| {
             let is_fetching = shown.is_streaming() && shown.waits().is_none();
@@ -465,7 +474,7 @@ impl Viewer {
             return None;
         }
         let is_moving = shown.is_moving() && !self.experiment.is_running();
-        if is_moving || shown.stage.ready() < 1.0 || self.steps || self.wants_picture {
+        if is_moving || shown.stage.ready() < 1.0 || self.steps || self.wants_picture || self.due > 0 {
             return Some(Duration::ZERO);
         }
         if self.loading.is_some() || self.experiment.is_running() || shown.is_streaming() {
@@ -500,6 +509,7 @@ impl Viewer {
 
     /// Takes a scene that is ready.
     fn take(&mut self, purpose: Purpose, name: String, ready: Ready) -> Result<(), Error> {
+        self.due = TOLD;
         match (purpose, &mut self.shown) {
             (Purpose::Rebuild, Some(shown)) => shown.rebuilt(ready)?,
             (Purpose::Compare, Some(shown)) => shown.compare(ready)?,
