@@ -445,10 +445,9 @@ impl Viewer {
         if is_input || self.last_input == 0.0 {
             (self.last_input, self.due) = (now, TOLD);
         }
-        let is_whole = self.shown.as_ref().is_none_or(|shown| {
-            let is_fetching = shown.is_streaming() && shown.waits().is_none();
-            shown.stage.ready() == 1.0 && !is_fetching
-        });
+        // A server that does not answer is asked again, though nobody is there.
+        let is_whole =
+            self.shown.as_ref().is_none_or(|shown| shown.stage.ready() == 1.0 && !shown.is_streaming());
         self.is_resting = now - self.last_input > REST && !self.is_on_path() && is_whole;
         seconds
     }
@@ -476,6 +475,9 @@ impl Viewer {
         let is_moving = shown.is_moving() && !self.experiment.is_running();
         if is_moving || shown.stage.ready() < 1.0 || self.steps || self.wants_picture || self.due > 0 {
             return Some(Duration::ZERO);
+        }
+        if let (Some((_, seconds)), None) = (shown.waits(), &self.loading) {
+            return Some(repaint.min(Duration::from_secs_f64(seconds.clamp(0.05, 1.0))));
         }
         if self.loading.is_some() || self.experiment.is_running() || shown.is_streaming() {
             return Some(repaint.min(Duration::from_millis(50)));

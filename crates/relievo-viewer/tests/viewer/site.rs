@@ -243,6 +243,12 @@ fn a_server_that_dies_is_told_and_its_return_goes_on() {
     assert!(picture.pixels().any(|pixel| *pixel != background), "what is there stays");
     driver.save("waits");
 
+    // Nobody is there for longer than it takes to rest: the server is still asked again, without drawing all the time.
+    driver.frame_after(61.0).expect("painted");
+    driver.frames(10);
+    assert!(!driver.viewer.is_resting());
+    assert!(driver.wait.is_some_and(|wait| wait >= Duration::from_millis(20)), "{:?}", driver.wait);
+
     let received = driver.viewer.bytes();
     let _host = Host::start(&address);
     until(&mut driver, "scene", is_whole);
