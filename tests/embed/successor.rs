@@ -135,6 +135,7 @@ fn finer_levels_appear_by_the_transition_of_the_object() {
             for object in [stage.rocks, stage.people] {
                 stage.scene.set_level_of_detail(object, &transition.into()).expect("levels");
             }
+            stage.renderer.prepare(&stage.scene).expect("compiled");
         };
         let mut stage = staged(0);
         let coarse = stage.shot();
