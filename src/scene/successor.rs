@@ -44,7 +44,7 @@ impl Scene {
         InputError::check(is_mesh, "object", old.kind.name(), || "must be a mesh")?;
         let capacity = old.capacity();
         let next = self.mesh(model, capacity)?;
-        self.object_mut(object)?.successor = Some(Box::new(next));
+        self.object_mut(object)?.become_later(next);
         Ok(())
     }
 
@@ -67,7 +67,7 @@ impl Scene {
         character.check_successor(model, options)?;
         let capacity = old.capacity();
         let next = self.character(model, capacity, options)?;
-        self.object_mut(object)?.successor = Some(Box::new(next));
+        self.object_mut(object)?.become_later(next);
         Ok(())
     }
 
@@ -106,6 +106,12 @@ impl Object {
             self.arrival.advance(self.level_of_detail.transition(), seconds);
             self.is_retuned = true;
         }
+    }
+
+    /// Sets the successor.
+    fn become_later(&mut self, next: Self) {
+        self.successor = Some(Box::new(next));
+        self.mark_transition();
     }
 
     /// Takes over the successor, if all of its data has arrived. Whether it did.

@@ -12,7 +12,8 @@ impl Object {
     /// Tells all drawables whether the object's levels geomorph, which decides their pipelines.
     pub(in crate::scene) fn mark_transition(&mut self) {
         let morphed = self.level_of_detail.transition == Transition::Geomorph;
-        let drawables = self.chunks.iter_mut().flat_map(|chunk| &mut chunk.drawables);
+        let next = self.successor.iter_mut().flat_map(|next| &mut next.chunks);
+        let drawables = self.chunks.iter_mut().chain(next).flat_map(|chunk| &mut chunk.drawables);
         drawables.for_each(|drawable| drawable.set_morphed(morphed));
     }
 }

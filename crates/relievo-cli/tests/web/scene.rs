@@ -37,7 +37,7 @@ pub fn said() -> &'static Value {
             ("/scene_bg.wasm", program.as_slice()),
         ];
         let browser = browser::program().expect("the suite needs a browser");
-        let result = browser::visit(&browser, &files, Duration::from_secs(240)).expect("a result");
+        let result = browser::visit(&browser, &files, Duration::from_secs(600)).expect("a result");
         println!(
             "built in {built:.1} s, {} bytes of WebAssembly; {} s; all {:.1} s",
             program.len(),
