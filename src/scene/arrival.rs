@@ -5,8 +5,11 @@ use crate::lod::transition::{Pace, Transition};
 /// Seconds over which the levels of a new model come into use.
 const ARRIVAL: f32 = 0.5;
 
+/// Powers of two between the first factor of a threshold and 1.
+const RANGE: f32 = 12.0;
+
 /// Least progress in a frame, so that an arrival ends even if no time passes.
-const LEAST_STEP: f32 = 1.0 / 16.0;
+const LEAST_STEP: f32 = 1.0 / 32.0;
 
 /// How far the levels of a new model have come into use. The thresholds of its new levels rise from 0 to their values, so no
 /// level finer than those of the old model is chosen at first, and then one after the other, as if instances came nearer.
@@ -50,11 +53,11 @@ impl Arrival {
         }
     }
 
-    /// Thresholds with those of levels that still arrive lowered. Errors of levels grow by a factor from one to the next, so a
-    /// cube spends about the same time on each.
+    /// Thresholds with those of levels that still arrive lowered. Errors grow by a factor from one level to the
+    /// next, and so do these factors with time: each level takes about as long.
     pub fn lowered(&self, mut thresholds: Vec<f32>) -> Vec<f32> {
         for (threshold, progress) in thresholds.iter_mut().zip(&self.progress) {
-            *threshold *= progress.powi(3);
+            *threshold *= if *progress > 0.0 { (RANGE * (progress - 1.0)).exp2() } else { 0.0 };
         }
         thresholds
     }
@@ -73,18 +76,18 @@ mod tests {
         arrival.begin(100, &[1000, 500, 200, 100, 50], 0.25);
         assert_eq!(arrival.lowered(all.to_vec()), [0.0, 0.0, 0.0, 0.0, 8.0]);
         arrival.advance(Transition::Geomorph, 0.5 * ARRIVAL);
-        assert_eq!(arrival.lowered(all.to_vec()), [0.0, 0.125, 0.25, 0.5, 8.0]);
+        assert_eq!(arrival.lowered(all.to_vec()), [0.0, 0.015_625, 0.031_25, 0.0625, 8.0]);
         // A still finer model comes meanwhile, with two levels more.
         arrival.begin(1000, &[4000, 2000, 1000, 500, 200, 100, 50], 0.125);
         assert_eq!(arrival.error, 0.25);
         let lowered = arrival.lowered(vec![0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0]);
-        assert_eq!(lowered, [0.0, 0.0, 0.0, 0.125, 0.25, 0.5, 8.0]);
+        assert_eq!(lowered, [0.0, 0.0, 0.0, 0.015_625, 0.031_25, 0.0625, 8.0]);
         // If no time passes, it ends as well.
         let frames = (1..).find(|_| {
             arrival.advance(Transition::Geomorph, 0.0);
             !arrival.is_running()
         });
-        assert_eq!(frames, Some(16));
+        assert_eq!(frames, Some(32));
         assert_eq!(arrival.lowered(all.to_vec()), all);
     }
 

@@ -146,8 +146,8 @@ fn finer_levels_appear_by_the_transition_of_the_object() {
         assert!(stage.shot() == coarse, "{transition:?}: the first picture is not the old one");
         let mut pictures = vec![coarse];
         let mut bounds = Vec::new();
-        for _ in 0..30 {
-            stage.scene.advance(0.025).expect("finite");
+        for _ in 0..40 {
+            stage.scene.advance(1.0 / 60.0).expect("finite");
             pictures.push(stage.shot());
             bounds.push(stage.view.statistics().expect("arrived").pixels);
         }
@@ -160,9 +160,11 @@ fn finer_levels_appear_by_the_transition_of_the_object() {
         let largest = pictures.windows(2).map(|two| changed(&two[0], &two[1])).max().expect("some");
         let different = pictures.windows(2).filter(|two| two[0] != two[1]).count();
         println!("{transition:?}: {pop} values change, at most {largest} at once, in {different} frames");
-        assert!(bounds[0] > 0.5 && bounds[29] == 0.5, "{bounds:?}");
+        // A fade in time shows what the limit does not allow.
+        let is_timed = matches!(transition.pace(), Some(Pace::Seconds(_)));
+        assert!((is_timed || bounds[0] > 0.5) && bounds[39] == 0.5, "{bounds:?}");
         assert!(
-            different >= 8 && 2 * largest < pop,
+            different >= 8 && 3 * largest < 2 * pop,
             "{transition:?}: {largest} of {pop} at once, {different}"
         );
     }

@@ -114,7 +114,8 @@ fn a_lost_device_is_replaced() {
     driver.frames(4);
     assert_eq!(different(&driver.picture(), &picture), 0);
     let letters = different(&driver.window(), &window);
-    assert!(letters < 1500, "{letters} pixels of the panel differ: a status line has other numbers");
+    // The status line and the plots have other times.
+    assert!(letters < 5000, "{letters} pixels of the panel differ");
     driver.slide("pixels off", 0.9);
     assert!(driver.shown().quality.pixels > 4.0 && driver.viewer.notice().is_none());
 }
