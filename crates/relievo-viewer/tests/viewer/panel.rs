@@ -292,6 +292,7 @@ fn gates_have_their_parts() {
 }
 
 #[test]
+#[ignore = "measures for minutes: cargo test --release --test viewer -- --ignored press_of_a_button"]
 fn the_experiment_of_thesis_a_runs_at_the_press_of_a_button() {
     let mut driver = rocks([640, 1400]);
     for section in ["Scene", "Detail", "Time and camera", "Experiment"] {
