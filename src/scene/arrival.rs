@@ -18,7 +18,7 @@ pub(super) struct Arrival {
     /// The progress of the threshold of each level, 0 to 1. It does not decrease from one level to the next. Empty if nothing
     /// arrives; levels beyond the list have arrived.
     progress: Vec<f32>,
-    /// The error of the old model's finest level in model units.
+    /// The error of the old model's finest level in model units; 0 if nothing arrives.
     pub error: f32,
 }
 
@@ -37,7 +37,7 @@ impl Arrival {
         if same == 0 {
             return;
         }
-        self.error = if self.is_running() { self.error.max(error) } else { error };
+        self.error = self.error.max(error);
         let kept = std::mem::take(&mut self.progress).into_iter().skip(1);
         self.progress = std::iter::repeat_n(0.0, 1 + same).chain(kept).collect();
     }

@@ -97,7 +97,7 @@ impl Object {
 
     /// The error of what is drawn at full detail, in model units. While finer levels arrive, it is that of the old model.
     pub(super) fn finest_error(&self) -> f32 {
-        if self.arrival.is_running() { self.arrival.error.max(self.finest_error) } else { self.finest_error }
+        self.arrival.error.max(self.finest_error)
     }
 
     /// Brings the levels of a new model further into use. `seconds` is the time since the last frame.

@@ -206,6 +206,11 @@ impl Loader<'_> {
         self.ready(document, world, known, (source, is_framed)).await
     }
 
+    /// Tells that the server does not answer.
+    fn waits(&self, why: &str) {
+        self.teller.tell(News::Step(format!("waiting for the server: {why}")));
+    }
+
     /// Builds a scene of a site, as soon as there is something to show.
     async fn streamed(
         &self,
@@ -214,13 +219,12 @@ impl Loader<'_> {
         mut streaming: Streaming,
         from: (Arc<dyn Source>, bool),
     ) -> Result<Ready, Error> {
-        let wait = |why: &str| self.teller.tell(News::Step(format!("waiting for the server: {why}")));
         self.teller.step("waiting for what the scene needs").await;
-        let loaded = streaming.begin(wait).await?;
+        let loaded = streaming.begin(|why| self.waits(why)).await?;
         self.teller.step("building the scene on the device").await;
         let mut world = loaded.build_async(&gpu).await?;
         self.teller.step("waiting for the coarsest level").await;
-        streaming.appear(&mut world, wait).await?;
+        streaming.appear(&mut world, |why| self.waits(why)).await?;
         for arrival in streaming.arrivals() {
             self.teller.tell(News::Arrived(arrival));
         }
@@ -273,8 +277,7 @@ impl Loader<'_> {
         self.teller.step(format!("reading {}", name.display())).await;
         let is_package = name.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rlv"));
         if let Some((fetching, url)) = site.filter(|_| is_package) {
-            let wait = |why: &str| self.teller.tell(News::Step(format!("waiting for the server: {why}")));
-            let model = fetching.coarsest(&url, wait).await?;
+            let model = fetching.coarsest(&url, |why| self.waits(why)).await?;
             return Ok((Document::of_model(name, &model), false));
         }
         self.fetch(name, source).await.map_err(|error| Error::file(name, error))?;

@@ -246,14 +246,13 @@ impl Streaming {
             if let Some(why) = &self.scene.fetcher().transport().failure {
                 wait(why);
             }
-            let failed = self.packages().into_iter().map(|package| match package.state {
-                FetchState::Failed(error) => Err(error),
-                _ => Ok(()),
+            let packages = self.packages();
+            let failed = packages.iter().map(|package| match &package.state {
+                FetchState::Failed(error) => Some(error),
+                _ => None,
             });
-            let failed: Vec<_> = failed.collect();
-            if let Some(Err(error)) = failed.iter().find(|state| state.is_err())
-                && failed.iter().all(Result::is_err)
-            {
+            // All of them.
+            if let Some(Some(error)) = failed.collect::<Option<Vec<_>>>().map(|all| all.first().copied()) {
                 return Err(error.clone().into());
             }
             sleep(LOOK).await;

@@ -4,10 +4,12 @@ use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use relievo::asset::ModelFile;
+use relievo_delivery::catalog::Catalog;
 use relievo_delivery::server::{ServeOptions, Server, Site};
 use tempfile::TempDir;
 
@@ -65,6 +67,24 @@ pub fn options(models: &Path) -> ServeOptions {
         listen: "127.0.0.1:0".to_owned(),
         ..ServeOptions::default()
     }
+}
+
+/// Makes the models of a site at once on three servers. Returns their catalogs, which are equal, and how many of them worked on
+/// the rock.
+pub fn cook_on_three(open: &(dyn Fn() -> Site + Sync)) -> (Catalog, usize) {
+    let cook = || {
+        let (site, steps) = (open(), AtomicUsize::new(0));
+        let failed = runtime().block_on(site.cook(&|name, _| {
+            steps.fetch_add(usize::from(name == "rock"), Ordering::Relaxed);
+        }));
+        assert!(failed.is_empty(), "{failed:?}");
+        (site.catalog(), steps.into_inner() > 0)
+    };
+    let all = std::thread::scope(|scope| {
+        [(); 3].map(|()| scope.spawn(cook)).map(|one| one.join().expect("no panic"))
+    });
+    assert!(all.iter().all(|(catalog, _)| *catalog == all[0].0));
+    (all[0].0.clone(), all.iter().filter(|(_, has_worked)| *has_worked).count())
 }
 
 /// A running server. It ends with the value.

@@ -9,12 +9,10 @@ mod random;
 #[path = "../load/trials.rs"]
 mod trials;
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use relievo_delivery::server::{ServeOptions, Site};
 use relievo_delivery::sha256;
 
-use host::{Host, built_ins, creature, rock, runtime};
+use host::{Host, built_ins, cook_on_three, creature, rock, runtime};
 
 /// A bucket of the store, written and read without relievo.
 struct Bucket {
@@ -85,35 +83,20 @@ fn a_thousand_malformed_requests_harm_nobody() {
 #[test]
 fn servers_that_share_a_bucket_cook_a_model_once() {
     let bucket = Bucket::new("shared").with_models();
-    let begun = AtomicUsize::new(0);
-    let cook = || {
-        let site = runtime().block_on(Site::open(bucket.options(), built_ins())).expect("a site");
-        let steps = AtomicUsize::new(0);
-        let failed = runtime().block_on(site.cook(&|name, _| {
-            steps.fetch_add(usize::from(name == "rock"), Ordering::Relaxed);
-        }));
-        assert!(failed.is_empty(), "{failed:?}");
-        begun.fetch_add(usize::from(steps.load(Ordering::Relaxed) > 0), Ordering::Relaxed);
-        site.catalog()
-    };
-    let catalogs = std::thread::scope(|scope| {
-        let all = [(); 3].map(|()| scope.spawn(cook));
-        all.map(|one| one.join().expect("no panic"))
-    });
-    assert_eq!(begun.load(Ordering::Relaxed), 1, "only one of them worked");
-    assert!(catalogs.iter().all(|catalog| *catalog == catalogs[0]));
+    let open = || runtime().block_on(Site::open(bucket.options(), built_ins())).expect("a site");
+    let (catalog, worked) = cook_on_three(&open);
+    assert_eq!(worked, 1, "only one of them worked");
     let path = format!("models/.relievo/objects/{}.rlv", sha256(rock()));
     assert!(bucket.get(&path) == rock());
     assert_eq!(bucket.keys("models/.relievo/locks"), [""; 0], "locks are removed");
     // A damaged package is made again, and a model that was exchanged becomes another package.
     bucket.put(&path, &rock()[..1000]);
-    cook();
+    assert_eq!(cook_on_three(&open).1, 1);
     assert!(bucket.get(&path) == rock());
-    assert_eq!(begun.load(Ordering::Relaxed), 2);
     let wall = relievo_samples::model("wall").expect("built in").to_glb().expect("a file");
     bucket.put("models/rock.glb", &wall);
-    assert_ne!(cook(), catalogs[0]);
-    assert_eq!(begun.load(Ordering::Relaxed), 3);
+    let (changed, worked) = cook_on_three(&open);
+    assert!(worked == 1 && changed != catalog);
 }
 
 #[test]

@@ -135,6 +135,19 @@ impl Driver {
         self.frames(8);
     }
 
+    /// Presses a button of the experiment, and waits until it has ended.
+    pub fn experiment(&mut self, button: &str, most: Duration) {
+        let start = Instant::now();
+        self.click(button);
+        while self.find("Run").is_none() {
+            assert!(start.elapsed() < most, "it does not end");
+            std::thread::sleep(Duration::from_millis(50));
+            self.frame();
+        }
+        self.frames(5);
+        println!("the experiment took {:.0} s", start.elapsed().as_secs_f64());
+    }
+
     /// Opens a file, and waits until it is there.
     pub fn open(&mut self, path: &Path) {
         self.viewer.open_address(&path.to_string_lossy());

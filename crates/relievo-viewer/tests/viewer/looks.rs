@@ -3,7 +3,7 @@
 //! `make looks` runs this. Each sheet has one theme and one width.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::Key;
 use image::RgbaImage;
@@ -70,13 +70,7 @@ fn every_section_light_and_dark_wide_and_narrow() {
                     driver.frames(20);
                 }
                 if section == "Experiment" && width == "wide" && theme == Theme::Light {
-                    driver.click("Run");
-                    let start = Instant::now();
-                    while driver.find("Run").is_none() {
-                        assert!(start.elapsed() < Duration::from_secs(600), "it does not end");
-                        std::thread::sleep(Duration::from_millis(50));
-                        driver.frame();
-                    }
+                    driver.experiment("Run", Duration::from_secs(600));
                 }
                 driver.frames(30);
                 pictures.push(driver.window());
@@ -129,15 +123,7 @@ fn the_whole_experiment_as_the_button_draws_it() {
     let edge = driver.rect("picture").right() + 2.0;
     let middle = driver.rect("picture").center().y;
     driver.drag(egui::pos2(edge, middle), egui::pos2(edge - 400.0, middle), egui::PointerButton::Primary);
-    driver.click("Run all distances");
-    let start = Instant::now();
-    while driver.find("Run").is_none() {
-        assert!(start.elapsed() < Duration::from_secs(1800), "it does not end");
-        std::thread::sleep(Duration::from_millis(100));
-        driver.frame();
-    }
-    driver.frames(5);
-    println!("all distances took {:.0} s", start.elapsed().as_secs_f64());
+    driver.experiment("Run all distances", Duration::from_secs(1800));
     driver.save("experiment-whole");
     driver.click("Save report");
     for request in &driver.requests {

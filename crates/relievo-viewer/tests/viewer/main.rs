@@ -3,6 +3,9 @@
 
 mod controls;
 mod driver;
+#[path = "../../../relievo-delivery/tests/delivery/host.rs"]
+#[allow(dead_code, reason = "other tests use the rest")]
+mod host;
 mod inputs;
 mod life;
 mod looks;

@@ -2,7 +2,7 @@
 //! and the experiment of thesis A.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::{Event, Key, PointerButton, TouchPhase, pos2, vec2};
 use relievo_viewer::{Drag, Memory, Request, Theme};
@@ -298,15 +298,7 @@ fn the_experiment_of_thesis_a_runs_at_the_press_of_a_button() {
     for section in ["Scene", "Detail", "Time and camera", "Experiment"] {
         driver.click(section);
     }
-    let start = Instant::now();
-    driver.click("Run");
-    while driver.find("Run").is_none() {
-        assert!(start.elapsed() < Duration::from_secs(400), "it does not end");
-        std::thread::sleep(Duration::from_millis(50));
-        driver.frame();
-    }
-    driver.frames(5);
-    println!("the experiment took {:.0} s", start.elapsed().as_secs_f64());
+    driver.experiment("Run", Duration::from_secs(400));
     driver.save("experiment");
     driver.click("Save report");
     let saved = driver.requests.iter().find_map(|request| match request {

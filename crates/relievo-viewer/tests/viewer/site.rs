@@ -1,15 +1,14 @@
 //! Scenes of a server (`relievo serve`): they appear coarsest first, and go on when the server dies and returns.
 
 use std::sync::{Arc, OnceLock};
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use relievo_delivery::client::get;
-use relievo_delivery::server::{Limits, ServeOptions, Server, Site};
+use relievo_delivery::server::{Limits, ServeOptions};
 use relievo_viewer::{Memory, Settings};
-use tokio::runtime::Runtime;
 
 use crate::driver::{Driver, creature, different, gpu, settings};
+use crate::host::{Host, options};
 use crate::inputs::SCENE as SCENE_OF_ROCKS;
 
 const SCENE: &str = r#"{
@@ -41,47 +40,21 @@ fn folder() -> &'static tempfile::TempDir {
     })
 }
 
-/// A server that ends with the value.
-struct Host {
-    address: String,
-    stop: Option<tokio::sync::oneshot::Sender<()>>,
-    thread: Option<JoinHandle<()>>,
+/// A server of the folder.
+fn serve(listen: &str) -> Host {
+    let folder = folder().path();
+    Host::start(ServeOptions {
+        scenes: vec![folder.join("walk.json")],
+        listen: listen.to_owned(),
+        // Connections that are kept do not keep a server alive for long that ends.
+        limits: Limits { idle_seconds: 0.5, ..Limits::default() },
+        ..options(folder)
+    })
 }
 
-impl Host {
-    fn start(listen: &str) -> Self {
-        static RUNTIME: OnceLock<Runtime> = OnceLock::new();
-        let runtime = RUNTIME.get_or_init(|| Runtime::new().expect("a runtime"));
-        let folder = folder().path();
-        let options = ServeOptions {
-            models: Some(folder.to_string_lossy().into_owned()),
-            scenes: vec![folder.join("walk.json")],
-            listen: listen.to_owned(),
-            // Connections that are kept do not keep a server alive for long that ends.
-            limits: Limits { idle_seconds: 0.5, ..Limits::default() },
-            ..ServeOptions::default()
-        };
-        let site = runtime.block_on(Site::open(options, Box::new(relievo_samples::Samples))).expect("a site");
-        assert!(runtime.block_on(site.cook(&|_, _| {})).is_empty());
-        let server = runtime.block_on(Server::bind(&site)).expect("a free port");
-        let address = server.address().expect("an address").to_string();
-        let (stop, stopped) = tokio::sync::oneshot::channel();
-        let thread = std::thread::spawn(move || {
-            runtime.block_on(server.run(async { drop(stopped.await) })).expect("an orderly end");
-        });
-        Self { address, stop: Some(stop), thread: Some(thread) }
-    }
-
-    fn scene(&self) -> String {
-        format!("http://{}/scenes/walk.json", self.address)
-    }
-}
-
-impl Drop for Host {
-    fn drop(&mut self) {
-        drop(self.stop.take());
-        let _ = self.thread.take().map(JoinHandle::join);
-    }
+/// The address of the scene.
+fn scene(host: &Host) -> String {
+    format!("{}/scenes/walk.json", host.base())
 }
 
 fn viewer(throttle: Option<f64>) -> Driver {
@@ -127,7 +100,7 @@ fn begin(driver: &mut Driver, url: String) {
 
 /// The picture of the scene of whole files, as the server has them.
 fn whole(host: &Host) -> image::RgbaImage {
-    let text = get(&host.scene(), None).expect("the scene");
+    let text = get(&scene(host), None).expect("the scene");
     let scene: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("scenes/walk.json");
@@ -149,10 +122,10 @@ fn whole(host: &Host) -> image::RgbaImage {
 
 #[test]
 fn a_scene_of_a_site_appears_coarsest_first_and_becomes_that_of_the_whole_files() {
-    let host = Host::start("127.0.0.1:0");
+    let host = serve("127.0.0.1:0");
     let expected = whole(&host);
     let mut driver = viewer(Some(SLOW));
-    begin(&mut driver, host.scene());
+    begin(&mut driver, scene(&host));
     until(&mut driver, "first picture", |driver| driver.viewer.first_picture().is_some());
     let (bytes, _) = driver.viewer.first_picture().expect("drawn");
     let mut seen = Vec::new();
@@ -176,7 +149,7 @@ fn a_scene_of_a_site_appears_coarsest_first_and_becomes_that_of_the_whole_files(
 
 #[test]
 fn throttles_hold_their_rate_and_can_be_taken_off() {
-    let host = Host::start("127.0.0.1:0");
+    let host = serve("127.0.0.1:0");
     for (rate, name) in [(SLOW, "2 Mbit/s"), (15.91e6, "15.91 Mbit/s")] {
         let mut driver = viewer(None);
         rocks(&mut driver);
@@ -184,38 +157,28 @@ fn throttles_hold_their_rate_and_can_be_taken_off() {
         driver.choose("throttle", name);
         assert_eq!(driver.viewer.settings().throttle, Some(rate));
         let (start, before) = (Instant::now(), driver.viewer.bytes());
-        begin(&mut driver, host.scene());
+        begin(&mut driver, scene(&host));
         until(&mut driver, "scene", |driver| driver.shown().name == "walk.json" && is_whole(driver));
         let measured = 8.0 * (driver.viewer.bytes() - before) as f64 / start.elapsed().as_secs_f64();
         assert!(measured < 1.05 * rate, "{measured} of {rate} bits a second");
     }
     let mut driver = viewer(Some(1000.0));
-    begin(&mut driver, host.scene().replace("walk.json", "none.json"));
+    begin(&mut driver, scene(&host).replace("walk.json", "none.json"));
     driver.settle();
     assert!(driver.viewer.notice().expect("told").contains("404"), "{:?}", driver.viewer.notice());
     rocks(&mut driver);
     driver.click("Network");
     driver.choose("throttle", "no limit");
-    begin(&mut driver, host.scene());
+    begin(&mut driver, scene(&host));
     until(&mut driver, "scene", |driver| driver.shown().name == "walk.json" && is_whole(driver));
 }
 
 #[test]
 fn a_package_of_a_site_is_framed_by_its_coarsest_level() {
-    let host = Host::start("127.0.0.1:0");
+    let host = serve("127.0.0.1:0");
     let mut driver = viewer(Some(SLOW));
-    driver.viewer.open_address(&format!("http://{}/models/creature/package", host.address));
+    driver.viewer.open_address(&format!("{}/models/creature.rlv", host.base()));
     driver.settle();
-    let is_there = driver.viewer.shown().is_some();
-    if !is_there {
-        // The address of the package is in the scene.
-        let text = get(&host.scene(), None).expect("the scene");
-        let scene: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
-        let name =
-            scene["characters"][0]["file"].as_str().expect("a name").trim_start_matches("../").to_owned();
-        driver.viewer.open_address(&format!("http://{}/{name}", host.address));
-        driver.settle();
-    }
     assert_eq!(driver.viewer.notice(), None);
     let first = levels(&driver);
     until(&mut driver, "package", is_whole);
@@ -228,11 +191,11 @@ fn a_package_of_a_site_is_framed_by_its_coarsest_level() {
 
 #[test]
 fn a_server_that_dies_is_told_and_its_return_goes_on() {
-    let host = Host::start("127.0.0.1:0");
+    let host = serve("127.0.0.1:0");
     let expected = whole(&host);
-    let address = host.address.clone();
+    let address = host.address.to_string();
     let mut driver = viewer(Some(SLOW));
-    begin(&mut driver, host.scene());
+    begin(&mut driver, scene(&host));
     until(&mut driver, "level", |driver| levels(driver)[0] >= 3);
     assert!(!is_whole(&driver));
     drop(host);
@@ -250,7 +213,7 @@ fn a_server_that_dies_is_told_and_its_return_goes_on() {
     assert!(driver.wait.is_some_and(|wait| wait >= Duration::from_millis(20)), "{:?}", driver.wait);
 
     let received = driver.viewer.bytes();
-    let _host = Host::start(&address);
+    let _host = serve(&address);
     until(&mut driver, "scene", is_whole);
     assert!(levels(&driver)[0] > there && driver.shown().waits().is_none());
     assert_eq!((different(&still(&mut driver), &expected), driver.viewer.notice()), (0, None));
@@ -266,9 +229,9 @@ fn a_server_that_dies_is_told_and_its_return_goes_on() {
 
 #[test]
 fn a_scene_of_a_site_is_built_anew_and_compared_without_fetching_again() {
-    let host = Host::start("127.0.0.1:0");
+    let host = serve("127.0.0.1:0");
     let mut driver = viewer(Some(SLOW));
-    begin(&mut driver, host.scene());
+    begin(&mut driver, scene(&host));
     until(&mut driver, "level", |driver| levels(driver)[0] >= 3);
     let before = levels(&driver);
     driver.click("Detail");
