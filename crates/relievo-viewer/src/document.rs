@@ -96,9 +96,8 @@ impl Document {
             InputError::new("terrain.config", "no JSON", format!("must be JSON: {error}"))
         })?;
         let is_coarse = config.get("coarseLevels").and_then(Value::as_u64).is_some_and(|levels| levels > 0);
-        let needs_patches = |name: &&str| config.get(name).is_some_and(|value| value != "seamless");
-        let is_endless =
-            is_coarse && !["thermal", "hydraulic", "thermalAfter", "border"].iter().any(needs_patches);
+        let needs_patches = |name: &&str| config.get(name).is_some();
+        let is_endless = is_coarse && !["thermal", "hydraulic", "thermalAfter"].iter().any(needs_patches);
         let terrain = if is_endless {
             json!({ "config": config, "endless": true })
         } else {
@@ -313,9 +312,10 @@ mod tests {
         assert!(of(endless).is_endless() && of(endless).file().is_ok());
         for text in [
             r#"{"patchSize": 65, "scaleFactor": 9, "seed": "a"}"#,
-            r#"{"patchSize": 65, "scaleFactor": 9, "seed": "a", "coarseLevels": 2, "border": "wrap"}"#,
+            r#"{"patchSize": 65, "scaleFactor": 9, "seed": "a", "coarseLevels": 2, "thermal": {"iterations": 2}}"#,
         ] {
-            assert!(!of(text).is_endless() && of(text).file().is_ok());
+            assert!(!of(text).is_endless());
+            assert_eq!(of(text).file().map(|_| ()), Ok(()), "{text}");
         }
         assert!(Document::of_terrain("{").is_err());
     }
