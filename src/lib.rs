@@ -55,6 +55,8 @@ pub mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod ops;
+#[doc(hidden)]
+pub mod parallel;
 #[cfg(test)]
 #[allow(dead_code, reason = "the laboratory uses the rest")]
 #[path = "../crates/relievo-lab/src/portrait/picture/mod.rs"]

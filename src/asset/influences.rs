@@ -99,31 +99,25 @@ impl Influences {
         vertices: impl IntoIterator<Item = Vec<Influence>>,
     ) -> Result<Self, InputError> {
         let mut influences = Self::default();
-        for (vertex, given) in vertices.into_iter().enumerate() {
-            let refused =
-                |value: String, bound: &str| InputError::new(format!("{path}[{vertex}]"), value, bound);
-            check(&given, usize::MAX).map_err(|(value, bound)| refused(value, &bound))?;
-            let mut most = 1.0;
-            for (at, Influence { bone, weight }) in given.iter().enumerate() {
-                if !(*weight > 0.0 && *weight <= most) {
-                    return Err(refused(
-                        weight.to_string(),
-                        "must be above 0, and at most 1 and the weight before",
-                    ));
-                }
-                if given[..at].iter().any(|other| other.bone == *bone) {
-                    return Err(refused(format!("joint {bone}"), "must be named once"));
-                }
-                most = *weight;
-            }
-            let sum: f64 = given.iter().map(|influence| f64::from(influence.weight)).sum();
-            if (sum - 1.0).abs() > 1e-6 {
-                return Err(refused(format!("a sum of {sum}"), "must be 1"));
-            }
-            influences.all.extend(given);
-            influences.offsets.push(influences.all.len() as u32);
+        for given in vertices {
+            influences.restore(path, given)?;
         }
         Ok(influences)
+    }
+
+    /// Appends a vertex as [`Influences::stored`] does.
+    pub(crate) fn restore(
+        &mut self,
+        path: &str,
+        vertex: impl IntoIterator<Item = Influence>,
+    ) -> Result<(), InputError> {
+        let first = self.all.len();
+        self.all.extend(vertex);
+        check_stored(&self.all[first..]).map_err(|(value, bound)| {
+            InputError::new(format!("{path}[{}]", self.vertices()), value, bound)
+        })?;
+        self.offsets.push(self.all.len() as u32);
+        Ok(())
     }
 
     /// Appends a vertex that copies the influences of `vertex`.
@@ -202,6 +196,27 @@ fn check(given: &[Influence], bones: usize) -> Result<(), Fault> {
         }
         None => Ok(()),
     }
+}
+
+/// Checks the influences of a vertex that were ordered before.
+fn check_stored(given: &[Influence]) -> Result<(), Fault> {
+    check(given, usize::MAX)?;
+    let mut most = 1.0;
+    for (at, Influence { bone, weight }) in given.iter().enumerate() {
+        if !(*weight > 0.0 && *weight <= most) {
+            let bound = "must be above 0, and at most 1 and the weight before";
+            return Err((weight.to_string(), bound.to_owned()));
+        }
+        if given[..at].iter().any(|other| other.bone == *bone) {
+            return Err((format!("joint {bone}"), "must be named once".to_owned()));
+        }
+        most = *weight;
+    }
+    let sum: f64 = given.iter().map(|influence| f64::from(influence.weight)).sum();
+    if (sum - 1.0).abs() > 1e-6 {
+        return Err((format!("a sum of {sum}"), "must be 1".to_owned()));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 //! influences. Both determine the distances at which the influences of a crowd may fade while the error stays within a
 //! limit in pixels.
 
+use crate::parallel::prelude::*;
 use glam::Vec3;
-use rayon::prelude::*;
 
 use super::bounding_sphere::{BoundingSphere, MARGIN, middle_of};
 use super::instance_lod::FadeRange;

@@ -5,8 +5,8 @@
 use std::iter::successors;
 use std::ops::ControlFlow;
 
+use crate::parallel::prelude::*;
 use glam::Vec3;
-use rayon::prelude::*;
 
 use super::attribute_weights::NORMAL;
 use super::pose::{Moment, moments};

@@ -1,6 +1,6 @@
 //! Complete height fields on the CPU. The reference implementations of all operations run in the order of a recipe.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::{border, despike, height, hydraulic, noise, pad, smooth, thermal, wrap};
 use crate::InputError;

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use crate::terrain::config::{HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;

@@ -159,9 +159,9 @@ pub fn extension<'a, T: Deserialize<'a>>(
     path: &str,
 ) -> Result<Option<T>, InputError> {
     let Some(given) = object.get("extensions").and_then(|all| all.get(name)) else { return Ok(None) };
-    serde_path_to_error::deserialize(given).map(Some).map_err(|error| {
+    faults::read(given, || given.clone()).map(Some).map_err(|error| {
         let path = format!("{path}.extensions.{name}");
-        let InputError { path: field, value, bound } = faults::of_type(given, &error);
+        let InputError { path: field, value, bound } = error;
         let path = if field == "glTF" { path } else { format!("{path}.{field}") };
         InputError { path, value, bound }
     })

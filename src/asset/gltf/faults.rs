@@ -4,10 +4,13 @@ use std::fmt::Debug;
 
 use gltf_json::validation::Error as Fault;
 use gltf_json::{accessor, animation, buffer, camera, material, mesh, texture};
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use crate::InputError;
-use crate::error::json::{refused_value, shown};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::error::json::refused_value;
+use crate::error::json::shown;
 
 /// Major version of glTF that is supported; any minor version is accepted.
 const MAJOR: &str = "2";
@@ -33,8 +36,24 @@ pub fn check_version(document: &Value) -> Result<(), InputError> {
     Ok(())
 }
 
+/// Converts JSON to a `T`. `document` gives the same JSON again, to quote a value in an error.
+///
+/// In browsers, an error has no path: the code for it is a twentieth of a page.
+pub fn read<'de, T: Deserialize<'de>>(
+    json: impl Deserializer<'de, Error = serde_json::Error>,
+    document: impl FnOnce() -> Value,
+) -> Result<T, InputError> {
+    #[cfg(not(target_arch = "wasm32"))]
+    let read = serde_path_to_error::deserialize(json).map_err(|error| of_type(&document(), &error));
+    #[cfg(target_arch = "wasm32")]
+    let read =
+        T::deserialize(json).map_err(|error| InputError::new("glTF", shown(&document()), error.to_string()));
+    read
+}
+
 /// Error for a value of the wrong type, or with a missing field.
-pub fn of_type(document: &Value, error: &serde_path_to_error::Error<serde_json::Error>) -> InputError {
+#[cfg(not(target_arch = "wasm32"))]
+fn of_type(document: &Value, error: &serde_path_to_error::Error<serde_json::Error>) -> InputError {
     let path = match error.path().to_string() {
         root if root == "." => String::new(),
         path => path,

@@ -14,7 +14,7 @@ use super::surface::{Added, NONE, Room, Surface};
 use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::morph::MorphDelta;
-use crate::asset::{Influence, Mesh, MorphTarget};
+use crate::asset::{Influence, Influences, Mesh, MorphTarget};
 
 /// How the attributes of a mesh become whole numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -283,16 +283,16 @@ impl Attributes {
         }
         for point in around.range.clone() {
             let near = near_of(point).map_or(0..0, |near| self.influence_range(near));
-            let near: Vec<(u32, i32)> = self.all[near].to_vec();
             let wanted = wanted_of(&self.grids, point);
             let context = &mut contexts.counts[near.len()];
             let count = 1 + coder.symbol(context, wanted.len().saturating_sub(1))?;
             let mut left = ALL_WEIGHTS;
             for at in 0..count {
                 let (bone, weight) = wanted.get(at).copied().unwrap_or_default();
-                let place = near.iter().position(|(other, _)| *other == bone).unwrap_or(MAX_INFLUENCES);
+                let known = &self.all[near.clone()];
+                let place = known.iter().position(|(other, _)| *other == bone).unwrap_or(MAX_INFLUENCES);
                 let place = coder.symbol(&mut contexts.bones[at], place)?;
-                let (bone, likely) = match near.get(place) {
+                let (bone, likely) = match known.get(place) {
                     Some(known) => *known,
                     None if place < MAX_INFLUENCES => return Err(damaged()),
                     None => {
@@ -545,11 +545,11 @@ impl Attributes {
             bone: *bone,
             weight: self.grids.weights.float(*weight),
         };
-        let influences = surface
-            .point_of
-            .iter()
-            .map(|point| self.all[self.influence_range(*point)].iter().map(influence).collect());
-        mesh.influences = crate::asset::Influences::stored("mesh.influences", influences)?;
+        mesh.influences = Influences::default();
+        for point in &surface.point_of {
+            let own = self.all[self.influence_range(*point)].iter();
+            mesh.influences.restore("mesh.influences", own.map(influence))?;
+        }
         let delta = |parts: &[i32; 9]| {
             let part = |group: usize| {
                 std::array::from_fn(|axis| self.grids.deltas[group].float(parts[3 * group + axis]))

@@ -1,7 +1,7 @@
 //! Choice of the bones to collapse. Each step chooses the bone whose collapse displaces vertices least.
 
+use crate::parallel::prelude::*;
 use glam::{DAffine3, DMat3, DVec3};
-use rayon::prelude::*;
 
 use super::compose::{is_constant, signs, signs_in};
 use super::rest::{Follower, Rest, bind};

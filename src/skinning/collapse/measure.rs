@@ -1,7 +1,7 @@
 //! The error of a model with collapsed bones, compared with the original.
 
+use crate::parallel::prelude::*;
 use glam::Vec3;
-use rayon::prelude::*;
 
 use super::{CollapseError, looked_at};
 use crate::InputError;

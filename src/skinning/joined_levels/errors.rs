@@ -4,8 +4,8 @@
 //! another triangle. So a triangle whose corners are near a single triangle of the other surface is near it as a whole. Of the
 //! remaining triangles, most samples are skipped, because the triangle that was nearest in the first pose is near enough.
 
+use crate::parallel::prelude::*;
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::tree::{Posed, Tree};
 use crate::asset::{Mesh, Model};

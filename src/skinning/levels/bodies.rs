@@ -3,8 +3,8 @@
 
 use std::collections::BTreeSet;
 
+use crate::parallel::prelude::*;
 use glam::{Mat3, Vec3};
-use rayon::prelude::*;
 
 use crate::asset::transform::Affine;
 use crate::asset::{Mesh, Model};

@@ -3,8 +3,8 @@
 
 use std::ops::{ControlFlow, Range};
 
+use crate::parallel::prelude::*;
 use glam::Vec3;
-use rayon::prelude::*;
 
 use super::bodies::{STRETCH, common};
 use super::near::{Sample, Sides, blend};

@@ -3,8 +3,8 @@
 //! The error of a level is a fraction of this size. The size does not depend on the bind pose, because inverse bind
 //! matrices may change its units.
 
+use crate::parallel::prelude::*;
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 
 use super::whole::Whole;
 use crate::skinning::attribute_weights::TextureArea;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::{
     ElevationInfo, ElevationLayout, ElevationMap, ElevationSource, ElevationTile, TILE_SIZE, TileNumber,

@@ -1,6 +1,6 @@
 //! Scalar fields over the texels of a texture, and operations on these fields: blurs, and colours shaded by heights.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::TEXTURE_SIZE;
 

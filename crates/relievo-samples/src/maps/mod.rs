@@ -16,9 +16,9 @@
 use std::str::FromStr;
 
 use image::{Rgba, RgbaImage};
-use rayon::prelude::*;
 use relievo::InputError;
 use relievo::ops::surface::map::{HeightMap, MAP_EDGE};
+use relievo::parallel::prelude::*;
 
 mod bricks;
 mod cobbles;

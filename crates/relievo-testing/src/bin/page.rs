@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use relievo_testing::wasm::{LARGEST, Program, packed};
+use relievo_testing::wasm::{LARGEST, Program, SMALL, packed};
 
 /// The files of the page.
 const FILES: [&str; 4] = ["index.html", "viewer.js", "viewer_bg.wasm", "creature.rlv"];
@@ -32,7 +32,7 @@ fn build(out: &Path) -> Result<(), String> {
     let program = Program {
         package: "relievo-page",
         library: "viewer",
-        profile: "web",
+        profile: SMALL,
         target: &std::path::absolute(&target).map_err(text)?,
     };
     program.build(out)?;

@@ -7,7 +7,7 @@ pub mod height;
 pub mod linear;
 pub mod quadtree;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use crate::surface::cone_map::reference::cone_map;
 use crate::surface::height_pyramid::reference::height_pyramid;
