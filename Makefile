@@ -36,11 +36,11 @@ view: adapter
 
 # The page with the viewer, and the sizes of its files.
 web: wasm
-	$(CARGO) run --release -p relievo-testing --bin page -- $(PAGE)
+	$(CARGO) run -p relievo-testing --bin page -- $(PAGE)
 
 # The same, served on localhost beside the demo's scene, even if its files are larger than they should be.
 serve: wasm
-	-$(CARGO) run --release -p relievo-testing --bin page -- $(PAGE)
+	-$(CARGO) run -p relievo-testing --bin page -- $(PAGE)
 	$(CARGO) run --release --bin relievo -- serve --page $(PAGE) --scene $(SCENE) --cache target/cache --listen 127.0.0.1:$(PORT)
 
 # Pictures of every section of the viewer's panel, and of thesis A's experiment, in target/viewer.

@@ -7,7 +7,8 @@ mod noise;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use image::imageops::FilterType;
+use image::Pixel as _;
+use image::imageops::{FilterType, resize};
 
 use crate::Error;
 use crate::srgb;
@@ -42,13 +43,11 @@ impl TerrainTexture {
     /// Converts an image to a texture of [`TEXTURE_SIZE`]² texels. The height map is the image's alpha channel or, without alpha,
     /// its brightness.
     pub fn from_image(image: &image::DynamicImage) -> Self {
-        let resized = image.resize_exact(TEXTURE_SIZE, TEXTURE_SIZE, FilterType::Triangle);
-        let mut texels = resized.to_rgba8().into_raw();
+        let mut resized = resize(&image.to_rgba8(), TEXTURE_SIZE, TEXTURE_SIZE, FilterType::Triangle);
         if !image.color().has_alpha() {
-            let brightness = resized.to_luma8().into_raw();
-            texels.chunks_exact_mut(4).zip(brightness).for_each(|(texel, brightness)| texel[3] = brightness);
+            resized.pixels_mut().for_each(|texel| texel.0[3] = texel.to_luma().0[0]);
         }
-        Self::from_texels(texels)
+        Self::from_texels(resized.into_raw())
     }
 
     /// Reads or generates the texture of every zone, in the order of the zones.

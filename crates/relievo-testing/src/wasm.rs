@@ -109,7 +109,10 @@ impl Program<'_> {
                 // A panic ends the program at once, without a message, and the `Debug` of a struct is its name: the code for
                 // both is a tenth of the program.
                 cargo.arg("-Zbuild-std-features=optimize_for_size");
-                cargo.env("RUSTFLAGS", "-Zunstable-options -Cpanic=immediate-abort -Zfmt-debug=shallow");
+                cargo.env(
+                    "RUSTFLAGS",
+                    "-Zunstable-options -Cpanic=immediate-abort -Zfmt-debug=shallow -Zlocation-detail=none",
+                );
             }
         }
         let output = cargo.output().map_err(|error| format!("{cargo:?}: {error}"))?;

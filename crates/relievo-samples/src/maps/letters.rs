@@ -1,6 +1,8 @@
 //! Lines of text as distances to the letters' outlines. With distances, edges can have any width at any resolution.
 
-use ab_glyph::{Font, FontRef, OutlineCurve, Point};
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::{DrawSettings, OutlinePen};
+use skrifa::{FontRef, MetadataProvider as _};
 
 /// Number of straight segments that replace a curve.
 const PIECES: usize = 8;
@@ -26,25 +28,29 @@ impl Line {
     /// Lays out `text`, `width` wide including the advances of all letters, and stretched vertically by `stretch`. Capital
     /// letters are centered on `middle`.
     pub fn new(text: &str, middle: [f64; 2], width: f64, stretch: f64) -> Self {
-        let font = FontRef::try_from_slice(LETTERS).expect("the font of the crate");
-        let advance = |letter| f64::from(font.h_advance_unscaled(font.glyph_id(letter)));
+        let font = FontRef::new(LETTERS).expect("the font of the crate");
+        let (glyph_of, outlines) = (font.charmap(), font.outline_glyphs());
+        let sizes = font.glyph_metrics(Size::unscaled(), LocationRef::default());
+        let glyph = |letter: char| glyph_of.map(letter).unwrap_or_default();
+        let advance = |letter| f64::from(sizes.advance_width(glyph(letter)).unwrap_or_default());
+        // In units of the font.
+        let outline = |letter| {
+            let mut pen = Pen::default();
+            let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+            if let Some(outline) = outlines.get(glyph(letter)) {
+                outline.draw(settings, &mut pen).expect("an outline of the font of the crate");
+            }
+            pen.curves
+        };
         let scale = width / text.chars().map(advance).sum::<f64>();
-        let capital = font.outline(font.glyph_id('H')).map_or(0.0, |outline| {
-            let bounds = outline.bounds;
-            f64::from(bounds.min.y).max(f64::from(bounds.max.y))
-        });
+        let capital = outline('H').iter().flatten().map(|point| point[1]).fold(0.0, f64::max);
         let mut pen = middle[0] - 0.5 * width;
         let mut glyphs = Vec::new();
         for letter in text.chars() {
-            let position = |point: Point| {
-                let [x, y] = [point.x, point.y].map(f64::from);
-                [pen + scale * x, middle[1] + stretch * scale * (0.5 * capital - y)]
-            };
-            if let Some(outline) = font.outline(font.glyph_id(letter)) {
-                glyphs.extend(Glyph::new(
-                    outline.curves.iter().flat_map(|curve| edges(curve, position)).collect(),
-                ));
-            }
+            let position =
+                |[x, y]: [f64; 2]| [pen + scale * x, middle[1] + stretch * scale * (0.5 * capital - y)];
+            let edges = outline(letter).iter().flat_map(|curve| edges(curve, position)).collect();
+            glyphs.extend(Glyph::new(edges));
             pen += scale * advance(letter);
         }
         Self { glyphs }
@@ -62,17 +68,58 @@ impl Line {
     }
 }
 
+/// Collects the curves of an outline: two points of a line, three of a quadratic curve, or four of a cubic one.
+#[derive(Default)]
+struct Pen {
+    start: [f64; 2],
+    at: [f64; 2],
+    curves: Vec<Vec<[f64; 2]>>,
+}
+
+impl Pen {
+    fn to<const N: usize>(&mut self, points: [[f32; 2]; N]) {
+        let points = points.map(|point| point.map(f64::from));
+        self.curves.push([&[self.at], &points[..]].concat());
+        self.at = points[N - 1];
+    }
+}
+
+impl OutlinePen for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.start = [x, y].map(f64::from);
+        self.at = self.start;
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.to([[x, y]]);
+    }
+
+    fn quad_to(&mut self, bx: f32, by: f32, x: f32, y: f32) {
+        self.to([[bx, by], [x, y]]);
+    }
+
+    fn curve_to(&mut self, bx: f32, by: f32, cx: f32, cy: f32, x: f32, y: f32) {
+        self.to([[bx, by], [cx, cy], [x, y]]);
+    }
+
+    fn close(&mut self) {
+        if self.at != self.start {
+            self.curves.push(vec![self.at, self.start]);
+        }
+    }
+}
+
 /// Approximates a curve by straight segments.
-fn edges(curve: &OutlineCurve, position: impl Fn(Point) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
+fn edges(curve: &[[f64; 2]], position: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
+    let points: Vec<[f64; 2]> = curve.iter().map(|point| position(*point)).collect();
     // A quadratic curve is converted to an equal cubic curve.
-    let controls = match *curve {
-        OutlineCurve::Line(a, b) => return vec![[position(a), position(b)]],
-        OutlineCurve::Quad(a, b, c) => {
-            let [a, b, c] = [position(a), position(b), position(c)];
+    let controls = match points[..] {
+        [a, b, c] => {
             let third = |end: [f64; 2]| [0, 1].map(|axis| (end[axis] + 2.0 * b[axis]) / 3.0);
             [a, third(a), third(c), c]
         }
-        OutlineCurve::Cubic(a, b, c, d) => [position(a), position(b), position(c), position(d)],
+        [a, b, c, d] => [a, b, c, d],
+        _ => return vec![[points[0], points[1]]],
     };
     let at = |piece: usize| {
         let t = piece as f64 / PIECES as f64;
