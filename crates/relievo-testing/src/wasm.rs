@@ -138,7 +138,7 @@ pub const LARGEST: usize = 1_500_000;
 /// None for bytes in memory, but the library may have one.
 pub fn packed(bytes: &[u8]) -> std::io::Result<usize> {
     let mut packed = Vec::new();
-    let options = brotli::enc::BrotliEncoderParams { quality: 11, lgwin: 24, ..Default::default() };
+    let options = brotli::enc::BrotliEncoderParams { quality: 11, lgwin: 22, ..Default::default() };
     brotli::BrotliCompress(&mut &bytes[..], &mut packed, &options)?;
     Ok(packed.len())
 }
