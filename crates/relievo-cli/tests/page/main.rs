@@ -165,12 +165,15 @@ fn visit(folder: &Path, flags: &[&str], plan: &[Value], heard: &mut dyn FnMut(&s
     });
     let read =
         |path: PathBuf| std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    // The console's errors are kept from the first script on, and devices, so that they can be lost.
+    // The console's errors are kept from the first script on, and devices, so that they can be lost. Whoever reads the canvas is
+    // told of commands.
     let hook = "<script>window.said = []; window.devices = []; for (const kind of ['error', 'warn']) { const own = console[kind]; \
         console[kind] = (...all) => { window.said.push(kind + ': ' + all.join(' ')); own(...all); }; } \
         window.addEventListener('error', (event) => window.said.push('error: ' + event.message)); \
         const own = GPUAdapter.prototype.requestDevice; GPUAdapter.prototype.requestDevice = async function (...all) { \
-        const device = await own.apply(this, all); window.devices.push(device); return device; };</script>\n";
+        const device = await own.apply(this, all); window.devices.push(device); return device; }; \
+        const submit = GPUQueue.prototype.submit; GPUQueue.prototype.submit = function (...all) { \
+        submit.apply(this, all); if (window.submitted) window.submitted(); };</script>\n";
     let index = include_str!("../../../relievo-viewer/web/index.html");
     let index = index.replacen("<script type=\"module\">", &format!("{hook}<script type=\"module\">"), 1);
     let [rock, creature] = ["rock", "creature"].map(package);
