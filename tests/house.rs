@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// The folders and files below `src/`, lowest floor first; those of one floor do not use each other.
 const FLOORS: &[&[&str]] = &[
-    &["error", "hash", "ops", "shared", "srgb"],
+    &["error", "hash", "ops", "parallel", "shared", "srgb"],
     &["asset", "gpu"],
     &["mesh"],
     &["animation", "surface", "terrain"],
