@@ -1,6 +1,7 @@
 //! Reads the files that a scene names, and prepares their contents: levels of detail, reliefs, textures.
 
 use std::collections::{BTreeSet, HashMap};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -388,7 +389,8 @@ impl<'a> Files<'a> {
 
     fn decoded(&self, path: &str, file: &Path) -> Result<DynamicImage, InputError> {
         let bytes = self.bytes(path, file)?;
-        crate::surface::map::decode(&bytes).map_err(|error| {
+        // The same type of reader as for images of models: the decoders are compiled for each.
+        crate::surface::map::decode(Cursor::new(&bytes[..])).map_err(|error| {
             InputError::new(path, file.display(), format!("must be a whole PNG or JPEG: {error}"))
         })
     }
@@ -562,7 +564,7 @@ mod tests {
     fn terrain_has_maps_and_injected_heights() {
         let read = |name: &Path| match name.to_str() {
             Some("map.png") => {
-                let mut bytes = std::io::Cursor::new(Vec::new());
+                let mut bytes = Cursor::new(Vec::new());
                 let image = image::ImageBuffer::from_fn(12, 9, |x, y| image::Luma([(x * 5_000 + y) as u16]));
                 let written = DynamicImage::ImageLuma16(image).write_to(&mut bytes, image::ImageFormat::Png);
                 written.map_err(std::io::Error::other).map(|()| bytes.into_inner())

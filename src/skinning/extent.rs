@@ -2,7 +2,6 @@
 //! influences. Both determine the distances at which the influences of a crowd may fade while the error stays within a
 //! limit in pixels.
 
-use crate::parallel::prelude::*;
 use glam::Vec3;
 
 use super::bounding_sphere::{BoundingSphere, MARGIN, middle_of};
@@ -13,6 +12,7 @@ use crate::animation::Projection;
 use crate::asset::Mesh;
 use crate::asset::Model;
 use crate::asset::influences::Influence;
+use crate::parallel::prelude::*;
 
 /// Safety factor of [`Extent::stray`] over the sampled maximum. If a vertex's displacement changed linearly between two
 /// poses, its maximum would be at one of the two. The factor covers curvature.

@@ -5,7 +5,6 @@
 use std::iter::successors;
 use std::ops::ControlFlow;
 
-use crate::parallel::prelude::*;
 use glam::Vec3;
 
 use super::attribute_weights::NORMAL;
@@ -15,6 +14,7 @@ use crate::asset::mesh::{MAX_LEVELS, MeshLevel};
 use crate::asset::{Mesh, Model};
 use crate::mesh::progressive::{Became, partners};
 use crate::mesh::simplify::{Groups, Simplified, SimplifyOptions, Surface, simplify_watched};
+use crate::parallel::prelude::*;
 use bodies::Bodies;
 use errors::{Suspects, errors};
 use keys::{Keys, key_moments};

@@ -1,9 +1,8 @@
 //! Complete height fields on the CPU. The reference implementations of all operations run in the order of a recipe.
 
-use crate::parallel::prelude::*;
-
 use super::{border, despike, height, hydraulic, noise, pad, smooth, thermal, wrap};
 use crate::InputError;
+use crate::parallel::prelude::*;
 use crate::terrain::border::neighbours;
 use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;

@@ -8,7 +8,6 @@
 use std::collections::BTreeMap;
 
 use crate::parallel::prelude::*;
-
 use crate::terrain::config::{HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::field::region;

@@ -10,7 +10,7 @@ use std::ops::BitOrAssign;
 use skrifa::instance::{Location, LocationRef, Size};
 use skrifa::{FontRef, MetadataProvider as _, Tag};
 
-/// What `harfrust` keeps of a font: nothing here.
+/// Data of a font that shapers share. This crate needs none.
 #[derive(Debug, Default)]
 pub struct ShaperData;
 
@@ -150,17 +150,17 @@ pub struct GlyphInfo {
 /// Where a glyph is, in units of the font.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GlyphPosition {
-    /// From its origin to that of the next.
+    /// The distance from the glyph's origin to the next glyph's origin.
     pub x_advance: i32,
-    /// The same upwards: 0.
+    /// The vertical part of that distance: 0.
     pub y_advance: i32,
-    /// From where it is written to its origin: 0.
+    /// The horizontal displacement of the glyph: 0.
     pub x_offset: i32,
-    /// The same upwards: 0.
+    /// The vertical displacement of the glyph: 0.
     pub y_offset: i32,
 }
 
-/// Options of `harfrust`: none here.
+/// Options of a shaper. This crate has none.
 #[derive(Debug, Default)]
 pub struct ShapeOptions;
 
@@ -171,7 +171,7 @@ impl ShapeOptions {
     }
 }
 
-/// What is known of the text around.
+/// Flags that tell whether a text begins or ends a paragraph.
 #[derive(Debug, Clone, Copy)]
 pub struct BufferFlags(u8);
 

@@ -1,6 +1,5 @@
 //! Choice of the bones to collapse. Each step chooses the bone whose collapse displaces vertices least.
 
-use crate::parallel::prelude::*;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::compose::{is_constant, signs, signs_in};
@@ -10,6 +9,7 @@ use crate::InputError;
 use crate::asset::clip::{Clip, TransformPart};
 use crate::asset::transform::column_major;
 use crate::asset::{Model, Skeleton};
+use crate::parallel::prelude::*;
 use crate::skinning::pose::{Moment, bones_at};
 
 /// The largest number of poses per clip in which costs are measured.

@@ -1,11 +1,11 @@
 //! The error of a model with collapsed bones, compared with the original.
 
-use crate::parallel::prelude::*;
 use glam::Vec3;
 
 use super::{CollapseError, looked_at};
 use crate::InputError;
 use crate::asset::{Affine, Mesh, Model};
+use crate::parallel::prelude::*;
 use crate::skinning::pose::{Moment, Pose, bones_at, weights_at};
 
 /// Distances in one pose: the largest of any bone, the largest of any vertex, and the sum of squares over all vertices.

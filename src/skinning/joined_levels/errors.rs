@@ -4,11 +4,11 @@
 //! another triangle. So a triangle whose corners are near a single triangle of the other surface is near it as a whole. Of the
 //! remaining triangles, most samples are skipped, because the triangle that was nearest in the first pose is near enough.
 
-use crate::parallel::prelude::*;
 use glam::DVec3;
 
 use super::tree::{Posed, Tree};
 use crate::asset::{Mesh, Model};
+use crate::parallel::prelude::*;
 use crate::skinning::pose::{Moment, bones_at, positions_of};
 
 /// The meshes of a level, as indices in the model.

@@ -3,12 +3,12 @@
 
 use std::collections::BTreeSet;
 
-use crate::parallel::prelude::*;
 use glam::{Mat3, Vec3};
 
 use crate::asset::transform::Affine;
 use crate::asset::{Mesh, Model};
 use crate::mesh::simplify::NO_BODY;
+use crate::parallel::prelude::*;
 use crate::skinning::palette::reference::palette;
 use crate::skinning::pose::{Moment, bones_at};
 

@@ -3,7 +3,6 @@
 
 use std::ops::{ControlFlow, Range};
 
-use crate::parallel::prelude::*;
 use glam::Vec3;
 
 use super::bodies::{STRETCH, common};
@@ -12,6 +11,7 @@ use super::whole::Whole;
 use crate::asset::Model;
 use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::NO_BODY;
+use crate::parallel::prelude::*;
 use crate::skinning::pose::{Moment, bones_at};
 
 /// Number of moments between two progress reports.

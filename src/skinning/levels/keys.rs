@@ -3,10 +3,10 @@
 //! The error of a level is a fraction of this size. The size does not depend on the bind pose, because inverse bind
 //! matrices may change its units.
 
-use crate::parallel::prelude::*;
 use glam::{Vec2, Vec3};
 
 use super::whole::Whole;
+use crate::parallel::prelude::*;
 use crate::skinning::attribute_weights::TextureArea;
 use crate::skinning::pose::Moment;
 

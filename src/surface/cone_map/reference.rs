@@ -1,7 +1,6 @@
 //! Cone maps: the CPU reference of `kernels/surface/cone_map.wgsl`.
 
 use crate::parallel::prelude::*;
-
 use crate::shared::surface::cone_map::{LEAST_RISE, NARROWING, OPENING, WIDEST};
 use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::{Address, HeightMap};

@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use crate::parallel::prelude::*;
-
 use super::{
     ElevationInfo, ElevationLayout, ElevationMap, ElevationSource, ElevationTile, TILE_SIZE, TileNumber,
 };
+use crate::parallel::prelude::*;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::field::region;

@@ -1,8 +1,7 @@
 //! Scalar fields over the texels of a texture, and operations on these fields: blurs, and colours shaded by heights.
 
-use crate::parallel::prelude::*;
-
 use super::TEXTURE_SIZE;
+use crate::parallel::prelude::*;
 
 /// Number of texels along an edge of a texture.
 const EDGE: usize = TEXTURE_SIZE as usize;

@@ -47,7 +47,7 @@ const STREAMED: &str = r#"{
 }"#;
 
 struct Page {
-    /// What the page said of each case.
+    /// The results of the page, one for each case.
     said: Value,
     /// The folder of the scene and its files.
     folder: tempfile::TempDir,
@@ -81,11 +81,16 @@ impl Drop for Server {
     }
 }
 
-/// A built-in model as a package.
-fn package(name: &str) -> Vec<u8> {
-    let model = relievo_samples::model(name).expect("built in").into();
-    let package = relievo::ops::skinning::cook(&model, &mut |_| std::ops::ControlFlow::Continue(()));
-    package.expect("cooked").expect("not broken off")
+/// The built-in rock and creature as packages.
+fn packages() -> &'static [Vec<u8>; 2] {
+    static PACKAGES: OnceLock<[Vec<u8>; 2]> = OnceLock::new();
+    PACKAGES.get_or_init(|| {
+        ["rock", "creature"].map(|name| {
+            let model = relievo_samples::model(name).expect("built in").into();
+            let package = relievo::ops::skinning::cook(&model, &mut |_| std::ops::ControlFlow::Continue(()));
+            package.expect("cooked").expect("not broken off")
+        })
+    })
 }
 
 /// The cases at a pixel ratio of 1.
@@ -124,7 +129,7 @@ fn page() -> &'static Page {
     PAGE.get_or_init(|| {
         let _alone = ALONE.lock();
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let [rock, creature] = ["rock", "creature"].map(package);
+        let [rock, creature] = packages();
         std::fs::create_dir(folder.path().join("served")).expect("made");
         for (name, bytes) in
             [("rock.rlv", &*rock), ("creature.rlv", &*creature), ("walk.json", STREAMED.as_bytes())]
@@ -155,7 +160,7 @@ fn double() -> &'static Page {
     })
 }
 
-/// What the page says of the cases of a plan. The files of the scene are written to a folder.
+/// Runs the cases of a plan in the page, and returns their results. Writes the files of the scene to `folder`.
 fn visit(folder: &Path, flags: &[&str], plan: &[Value], heard: &mut dyn FnMut(&str)) -> Value {
     static BUILT: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
     let (_, built) = BUILT.get_or_init(|| {
@@ -176,7 +181,7 @@ fn visit(folder: &Path, flags: &[&str], plan: &[Value], heard: &mut dyn FnMut(&s
         submit.apply(this, all); if (window.submitted) window.submitted(); };</script>\n";
     let index = include_str!("../../../relievo-viewer/web/index.html");
     let index = index.replacen("<script type=\"module\">", &format!("{hook}<script type=\"module\">"), 1);
-    let [rock, creature] = ["rock", "creature"].map(package);
+    let [rock, creature] = packages();
     std::fs::write(folder.join("rock.rlv"), &rock).expect("written");
     std::fs::write(folder.join("scene.json"), SCENE).expect("written");
     let (script, program) = (read(built.join("viewer.js")), read(built.join("viewer_bg.wasm")));

@@ -92,7 +92,7 @@ fn six_thousand_frames_leave_no_memory_behind() {
     println!("{done} frames in {:.0} s; the last scene drew {drawn}", start.elapsed().as_secs_f64());
     let half = &points[points.len() / 2..];
     for (name, at) in [("host", 1), ("device", 2)] {
-        // What a round opens and closes is the same in each.
+        // Every round opens and closes the same scenes, so the means of rounds can be compared.
         let rounds: Vec<(f64, f64)> = half
             .chunks(ROUND / STEP)
             .map(|round| {

@@ -2,11 +2,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::parallel::prelude::*;
 use glam::Vec3;
 
 use crate::asset::Model;
 use crate::mesh::simplify::weld;
+use crate::parallel::prelude::*;
 use crate::skinning::pose::{Moment, Pose};
 
 /// Tolerance for coincident positions, as a fraction of the pose's largest coordinate: about eight roundings of an f32.

@@ -8,7 +8,6 @@ pub mod linear;
 pub mod quadtree;
 
 use crate::parallel::prelude::*;
-
 use crate::surface::cone_map::reference::cone_map;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::map::{Address, HeightMap};
