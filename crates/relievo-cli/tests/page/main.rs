@@ -132,7 +132,7 @@ fn page() -> &'static Page {
         let [rock, creature] = packages();
         std::fs::create_dir(folder.path().join("served")).expect("made");
         for (name, bytes) in
-            [("rock.rlv", &*rock), ("creature.rlv", &*creature), ("walk.json", STREAMED.as_bytes())]
+            [("rock.rlv", rock.as_slice()), ("creature.rlv", creature), ("walk.json", STREAMED.as_bytes())]
         {
             std::fs::write(folder.path().join("served").join(name), bytes).expect("written");
         }
@@ -182,7 +182,7 @@ fn visit(folder: &Path, flags: &[&str], plan: &[Value], heard: &mut dyn FnMut(&s
     let index = include_str!("../../../relievo-viewer/web/index.html");
     let index = index.replacen("<script type=\"module\">", &format!("{hook}<script type=\"module\">"), 1);
     let [rock, creature] = packages();
-    std::fs::write(folder.join("rock.rlv"), &rock).expect("written");
+    std::fs::write(folder.join("rock.rlv"), rock).expect("written");
     std::fs::write(folder.join("scene.json"), SCENE).expect("written");
     let (script, program) = (read(built.join("viewer.js")), read(built.join("viewer_bg.wasm")));
     let mistake = SCENE.replace("\"seed\": \"page\"", "\"seed\": 7");
