@@ -48,6 +48,8 @@ pub(super) struct ElevationEntry {
 pub(super) struct ObjectEntry {
     /// Path of the entry in the scene file, such as `meshes[0]`.
     pub path: String,
+    /// What the scene file calls the object.
+    pub name: Option<String>,
     pub source: ModelSource,
     pub kind: EntryKind,
     /// Level of detail of a character's bones; the default for a mesh.

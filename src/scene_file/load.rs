@@ -132,6 +132,11 @@ impl SceneFile {
         paths.map(Path::to_owned).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
+    /// The `name` of the first object of a package that has one.
+    pub fn package_name(&self, package: &Path) -> Option<&str> {
+        self.of_package(package).into_iter().find_map(|at| self.objects[at].name.as_deref())
+    }
+
     /// Indices of the objects of a package.
     pub(super) fn of_package(&self, package: &Path) -> Vec<usize> {
         let entries = self.objects.iter().enumerate();

@@ -36,7 +36,8 @@ const SHADOWS: [(&str, ReliefShadow); 3] =
 
 /// An entry of `meshes`.
 pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
-    let fields = at.fields(&["file", "levels", "material", "transition", "lod", "instances", "scatter"])?;
+    let fields =
+        at.fields(&["name", "file", "levels", "material", "transition", "lod", "instances", "scatter"])?;
     let source = model(&fields)?;
     if let (ModelSource::Levels(_), Some(levels), Some(_)) =
         (&source, fields.get("levels"), fields.get("material"))
@@ -49,8 +50,19 @@ pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
 
 /// An entry of `characters`.
 pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
-    const KNOWN: [&str; 10] =
-        ["file", "levels", "clip", "rate", "start", "wrap", "transition", "lod", "instances", "scatter"];
+    const KNOWN: [&str; 11] = [
+        "name",
+        "file",
+        "levels",
+        "clip",
+        "rate",
+        "start",
+        "wrap",
+        "transition",
+        "lod",
+        "instances",
+        "scatter",
+    ];
     let fields = at.fields(&[&KNOWN[..], &parse_character::FIELDS].concat())?;
     let source = model(&fields)?;
     let all = PlayEntry { clip: None, rate: 1.0, start: 0.0, wrap: Wrap::Loop };
@@ -84,8 +96,9 @@ fn placed(
         let bound = "must be hard: a mesh with a relief has one level of detail";
         return Err(InputError::new(path, "geomorph", bound));
     }
+    let name = fields.maybe("name", |at| at.text().map(str::to_owned))?;
     let (path, detail) = (at.path.clone(), CharacterDetail::default());
-    Ok(ObjectEntry { path, source, kind, detail, transition, level_of_detail, instances, scatter })
+    Ok(ObjectEntry { path, name, source, kind, detail, transition, level_of_detail, instances, scatter })
 }
 
 /// The model's source, from the field `file` or the field `levels`.

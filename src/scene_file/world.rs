@@ -45,8 +45,10 @@ pub struct WorldObject {
     pub object: ObjectId,
     /// The object's kind.
     pub kind: WorldKind,
-    /// The seed of a terrain. For other kinds, the source in the scene file: a file name, or `builtin:` and a name.
+    /// The `name` in the scene file; without one, the `source`.
     pub name: String,
+    /// The seed of a terrain. For other kinds, the source in the scene file: a file name, or `builtin:` and a name.
+    pub source: String,
     /// The model of a mesh or a character, with its levels of detail.
     pub model: Option<Arc<Model>>,
 }
@@ -116,8 +118,9 @@ impl LoadedScene {
             };
             let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;
             land = Some(object);
-            let name = terrain.recipe.config.seed.clone();
-            objects.push(WorldObject { object, kind: WorldKind::Terrain, name, model: None });
+            let source = terrain.recipe.config.seed.clone();
+            let name = source.clone();
+            objects.push(WorldObject { object, kind: WorldKind::Terrain, name, source, model: None });
         }
         let mut shown = vec![None; file.objects.len()];
         for (at, loaded) in self.objects.iter().enumerate() {
@@ -305,7 +308,9 @@ async fn added(scene: &mut Scene, entry: &ObjectEntry, loaded: &Loaded) -> Resul
         other => other,
     };
     let object = object.map_err(|error| below(&entry.path, in_entry(error)))?;
-    Ok(WorldObject { object, kind, name: entry.source.to_string(), model })
+    let source = entry.source.to_string();
+    let name = entry.name.clone().unwrap_or_else(|| source.clone());
+    Ok(WorldObject { object, kind, name, source, model })
 }
 
 fn spawn_one(

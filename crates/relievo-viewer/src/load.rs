@@ -243,15 +243,16 @@ impl Loader<'_> {
         (source, is_framed): (Arc<dyn Source>, bool),
     ) -> Result<Ready, Error> {
         for object in &mut world.objects {
-            if let Some(name) =
-                object.name.strip_prefix("builtin:").and_then(|name| name.strip_prefix(PREPARED))
-            {
-                object.name = name.to_owned();
+            for name in [&mut object.name, &mut object.source] {
+                if let Some(own) = name.strip_prefix("builtin:").and_then(|name| name.strip_prefix(PREPARED))
+                {
+                    *name = own.to_owned();
+                }
             }
             // A model that a mesh shows at rest has no clips, and one of several levels has several names.
-            let is_one = !object.name.contains(", ");
+            let is_one = !object.source.contains(", ");
             if let (Some(model), true, WorldKind::Character) = (&object.model, is_one, object.kind) {
-                models.insert(object.name.clone(), model.clone());
+                models.insert(object.source.clone(), model.clone());
             }
         }
         let extent = match is_framed {

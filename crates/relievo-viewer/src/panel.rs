@@ -28,19 +28,24 @@ pub use plots::quick;
 /// Width of the panel in points.
 const WIDTH: f32 = 320.0;
 
+/// Width of the window in points below which the panel lies under the picture, not beside it.
+const NARROW: f32 = 560.0;
+
 /// Lays out a frame.
 pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     keys::take(viewer, ui.ctx());
     status_line(viewer, ui);
-    let width = ui.available_width();
+    let [width, height] = ui.available_size().into();
     let mut is_open = viewer.settings.panel;
-    Panel::right("panel")
-        .resizable(true)
-        .default_size(WIDTH.min(0.82 * width))
-        .size_range(220.0_f32.min(0.8 * width)..=(0.8 * width).max(221.0))
-        .show_collapsible(ui, &mut is_open, |ui| {
-            egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| sections(viewer, ui));
-        });
+    let panel = if width < NARROW && width < height {
+        Panel::bottom("panel below").default_size(0.45 * height).size_range(0.2 * height..=0.8 * height)
+    } else {
+        let range = 220.0_f32.min(0.8 * width)..=(0.8 * width).max(221.0);
+        Panel::right("panel").default_size(WIDTH.min(0.82 * width)).size_range(range)
+    };
+    panel.resizable(true).show_collapsible(ui, &mut is_open, |ui| {
+        egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| sections(viewer, ui));
+    });
     viewer.settings.panel = is_open;
     CentralPanel::no_frame().show(ui, |ui| picture(viewer, ui));
     keys::list(viewer, ui.ctx());

@@ -334,7 +334,7 @@ impl Shown {
                 world.objects.iter().filter(|object| object.kind != WorldKind::Terrain).collect();
             for (at, name) in document.names().into_iter().enumerate() {
                 let own = match &self.streaming {
-                    Some(_) => left.iter().position(|object| Some(&object.name) == name.as_ref()),
+                    Some(_) => left.iter().position(|object| Some(&object.source) == name.as_ref()),
                     None => Some(0),
                 };
                 let Some(own) = own.filter(|own| *own < left.len()) else { continue };

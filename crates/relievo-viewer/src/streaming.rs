@@ -28,8 +28,8 @@ const LOOK: f64 = 0.004;
 /// A request that runs.
 #[derive(Debug, Clone)]
 pub struct Asked {
-    /// The address.
-    pub url: String,
+    /// What the package is called, or the end of the address.
+    pub name: String,
     /// The bytes that were asked for; `None` for the whole file.
     pub range: Option<Range<u64>>,
     /// Number of bytes that have come.
@@ -48,6 +48,8 @@ pub(crate) struct Wire {
     /// Parts of answers that may not come yet.
     held: VecDeque<(RequestId, Answer)>,
     asked: BTreeMap<RequestId, Asked>,
+    /// What packages are called, by the names of their files.
+    names: BTreeMap<String, String>,
     arrivals: Vec<Arrival>,
     /// Why the last answer failed, if it did.
     failure: Option<String>,
@@ -55,18 +57,17 @@ pub(crate) struct Wire {
 
 impl Wire {
     fn new(rate: Option<f64>) -> Self {
-        let (held, asked, arrivals, failure) = Default::default();
+        let (held, asked, names, arrivals, failure) = Default::default();
         let (inner, counted) = (Inner::new(), Instant::now());
-        Self { inner, rate, credit: 0.0, counted, held, asked, arrivals, failure }
+        Self { inner, rate, credit: 0.0, counted, held, asked, names, arrivals, failure }
     }
 
     /// Takes a request from the list.
     fn end(&mut self, id: RequestId) {
         let Some(asked) = self.asked.remove(&id).filter(|asked| asked.bytes > 0) else { return };
-        let name = asked.url.rsplit('/').next().unwrap_or_default();
         let name = match &asked.range {
-            Some(range) => format!("{name} from {}", range.start),
-            None => name.to_owned(),
+            Some(range) => format!("{} from {}", asked.name, range.start),
+            None => asked.name,
         };
         self.arrivals.push(Arrival {
             name,
@@ -90,9 +91,11 @@ impl Wire {
 
 impl Transport for Wire {
     fn start(&mut self, request: Request) -> RequestId {
-        let (url, range) = (request.url.clone(), request.range.clone());
+        let file = request.url.rsplit('/').next().unwrap_or_default();
+        let name = self.names.get(file).map_or(file, String::as_str).to_owned();
+        let range = request.range.clone();
         let id = self.inner.start(request);
-        self.asked.insert(id, Asked { url, range, bytes: 0, began: Instant::now() });
+        self.asked.insert(id, Asked { name, range, bytes: 0, began: Instant::now() });
         id
     }
 
@@ -139,8 +142,10 @@ impl Transport for Wire {
 /// A package of the scene, as far as it is there.
 #[derive(Debug, Clone)]
 pub struct PackageState {
-    /// The name in the scene file.
-    pub name: PathBuf,
+    /// The path in the scene file.
+    pub path: PathBuf,
+    /// What it is called: the name of its object, or else that of the file.
+    pub name: String,
     /// Levels that are there, and levels of the package; 0 before its header is there.
     pub levels: [usize; 2],
     /// Images that are there, and images of the package.
@@ -216,7 +221,12 @@ impl Streaming {
 
     /// Begins to fetch what a scene file names, relative to its address.
     pub fn new(file: SceneFile, url: &str, fetching: Fetching) -> Self {
-        let Fetching { fetcher, began } = fetching;
+        let Fetching { mut fetcher, began } = fetching;
+        let named = |path: &PathBuf| {
+            let end = path.file_name()?.to_string_lossy().into_owned();
+            Some((end, file.package_name(path)?.to_owned()))
+        };
+        fetcher.transport_mut().names = file.packages().iter().filter_map(named).collect();
         Self { scene: StreamedScene::with_file(file, url, fetcher), began, told: BTreeSet::new() }
     }
 
@@ -299,8 +309,11 @@ impl Streaming {
         let of = |(path, key): (&Path, ModelKey)| {
             let [levels, images] = fetcher.count(key).map_or([0, 0], |count| [count.levels, count.images]);
             let all = fetcher.header(key).map_or([0, 0], |header| [header.levels.len(), header.images.len()]);
+            let file = path.file_name().map_or(Default::default(), |file| file.to_string_lossy());
+            let name = fetcher.transport().names.get(&*file).cloned();
             PackageState {
-                name: path.to_owned(),
+                path: path.to_owned(),
+                name: name.unwrap_or_else(|| path.display().to_string()),
                 levels: [levels, all[0]],
                 images: [images, all[1]],
                 state: fetcher.state(key),
@@ -312,7 +325,7 @@ impl Streaming {
     /// The packages that are whole, as files.
     pub fn whole(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let whole: BTreeSet<PathBuf> =
-            self.packages().into_iter().filter(PackageState::is_whole).map(|package| package.name).collect();
+            self.packages().into_iter().filter(PackageState::is_whole).map(|package| package.path).collect();
         let packages = self.scene.packages().filter(|(path, _)| whole.contains(*path));
         packages.map(|(path, key)| (path.to_owned(), self.scene.fetcher().bytes(key))).collect()
     }
@@ -331,11 +344,11 @@ impl Streaming {
     /// Packages that cannot be fetched, once each, with the reason.
     pub fn failures(&mut self) -> Vec<String> {
         let failed = self.packages().into_iter().filter_map(|package| match package.state {
-            FetchState::Failed(error) => Some((package.name, error)),
+            FetchState::Failed(error) => Some((package.path, error)),
             _ => None,
         });
         failed
-            .filter(|(name, _)| self.told.insert(name.clone()))
+            .filter(|(path, _)| self.told.insert(path.clone()))
             .map(|(_, error)| error.to_string())
             .collect()
     }

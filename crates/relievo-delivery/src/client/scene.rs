@@ -197,7 +197,8 @@ impl<T: Transport> StreamedScene<T> {
         for (path, key) in &self.packages {
             let mut want = Want { model: *key, error: f32::MAX, weight: UNSEEN };
             let name = path.display().to_string();
-            let objects = world.iter().flat_map(|world| &world.objects).filter(|object| object.name == name);
+            let objects =
+                world.iter().flat_map(|world| &world.objects).filter(|object| object.source == name);
             for object in objects {
                 let Some(scene) = world.map(|world| &world.scene) else { continue };
                 if let Some(wanted) = scene.wanted(object.object, views)? {

@@ -74,6 +74,7 @@ impl SceneSource {
     /// The scene file with the paths of packages, by the names of models, in the place of these names.
     pub fn with_packages(&self, packages: &BTreeMap<String, String>) -> Resource {
         let mut text = self.text.clone();
+        name_objects(&mut text, packages);
         let relative = packages.iter().map(|(name, path)| (name.clone(), format!("../{path}"))).collect();
         rename(&mut text, &relative);
         Resource::new(
@@ -126,6 +127,20 @@ fn each_name(value: &mut Value, change: &mut dyn FnMut(&str, &mut String)) {
         }
         Value::Array(values) => values.iter_mut().for_each(|value| each_name(value, change)),
         _ => {}
+    }
+}
+
+/// Names the objects of packages after their files, since the address of a package tells nobody what it is.
+fn name_objects(text: &mut Value, packages: &BTreeMap<String, String>) {
+    for list in ["meshes", "characters"] {
+        let entries = text.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten();
+        for entry in entries.filter_map(Value::as_object_mut) {
+            let file = entry.get("file").and_then(Value::as_str).filter(|file| packages.contains_key(*file));
+            if let (Some(file), false) = (file, entry.contains_key("name")) {
+                let name = file.rsplit('/').next().unwrap_or(file).to_owned();
+                entry.insert("name".to_owned(), Value::String(name));
+            }
+        }
     }
 }
 

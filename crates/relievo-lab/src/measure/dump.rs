@@ -78,7 +78,7 @@ impl CharacterDump {
                 let instances = world.scene.instances(object.object)?.len();
                 self.instances += instances;
                 self.characters.push(Character {
-                    file: object.name.clone(),
+                    file: object.source.clone(),
                     clips: model.clips.iter().map(|clip| clip.name().to_owned()).collect(),
                     bones: model.skeleton.bones().iter().map(|bone| bone.name.clone()).collect(),
                     instances,

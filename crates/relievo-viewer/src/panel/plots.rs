@@ -1,7 +1,7 @@
 //! The sections of plots: the last frames, and the experiment.
 
 use egui::{Ui, Vec2b};
-use egui_plot::{Corner, Legend, Line, Plot, PlotPoints};
+use egui_plot::{AxisHints, Corner, GridInput, GridMark, Legend, Line, Plot, PlotPoints};
 use relievo_lab::measure::{DistanceSweepOptions, GateName, SWEEP_MODES, SweepRow};
 
 use super::section;
@@ -69,13 +69,29 @@ fn plot(ui: &mut Ui, title: &str, series: &[Series]) {
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .show_axes(Vec2b::new(false, true))
-        .y_axis_min_width(44.0);
+        .custom_y_axes(vec![values()])
+        .y_grid_spacer(marks);
     let plot = if series.len() > 1 { plot.legend(legend()) } else { plot };
     plot.show(ui, |ui| {
         for ((name, points), color) in series.iter().zip(SERIES) {
             ui.line(Line::new(name.clone(), PlotPoints::from(points.clone())).color(color).width(1.5));
         }
     });
+}
+
+/// The axis of values, whose marks all have their number.
+fn values() -> AxisHints<'static> {
+    AxisHints::new_y().min_thickness(44.0).label_spacing(egui::Rangef::new(8.0, 12.0))
+}
+
+/// Two to five marks on the axis of values, at multiples of 1, 2 or 5 times a power of ten.
+fn marks(GridInput { bounds: (low, high), .. }: GridInput) -> Vec<GridMark> {
+    let part = ((high - low) / 3.0).max(1e-9);
+    let power = 10_f64.powf(part.log10().floor());
+    let step_size = [2.0, 5.0, 10.0].map(|factor| factor * power).into_iter().find(|step| *step >= part);
+    let step_size = step_size.unwrap_or(part);
+    let marks = (low / step_size).ceil() as i64..=(high / step_size).floor() as i64;
+    marks.map(|mark| GridMark { value: mark as f64 * step_size, step_size }).collect()
 }
 
 fn legend() -> Legend {
@@ -150,7 +166,8 @@ fn sweep(ui: &mut Ui, title: &str, series: &[Series]) {
         .allow_zoom(false)
         .allow_scroll(false)
         .allow_boxed_zoom(false)
-        .y_axis_min_width(44.0)
+        .custom_y_axes(vec![values()])
+        .y_grid_spacer(marks)
         .legend(legend().position(Corner::RightTop));
     plot.show(ui, |ui| {
         for ((name, points), color) in series.iter().zip(SERIES) {

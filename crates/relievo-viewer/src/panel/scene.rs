@@ -148,7 +148,7 @@ fn site(shown: &Shown, ui: &mut Ui) {
         }
         ui.end_row();
         for package in streaming.packages() {
-            ui.add(egui::Label::new(short(&package.name.display().to_string())));
+            ui.add(egui::Label::new(short(&package.name)));
             for [here, all] in [package.levels, package.images] {
                 ui.label(format!("{here} of {all}"));
             }
@@ -156,7 +156,7 @@ fn site(shown: &Shown, ui: &mut Ui) {
         }
     });
     for asked in streaming.asked() {
-        let name = short(asked.url.rsplit('/').next().unwrap_or_default());
+        let name = short(&asked.name);
         let of = match &asked.range {
             Some(range) if range.end < u64::MAX => format!(" of {}", grouped(range.end - range.start)),
             _ => String::new(),

@@ -145,6 +145,15 @@ fn a_scene_of_a_site_appears_coarsest_first_and_becomes_that_of_the_whole_files(
     assert_eq!(different(&still(&mut driver), &expected), 0);
     let [here, all] = levels(&driver);
     assert!(here == all, "{here} of {all} levels");
+    // By the names of their files, though their addresses are hashes.
+    let shown = driver.shown();
+    let mut names: Vec<_> = shown.packages().into_iter().map(|package| package.name).collect();
+    names.sort();
+    assert_eq!(names, ["creature.rlv", "rock.rlv"]);
+    let listed: Vec<_> = shown.stage.world.objects.iter().map(|object| object.name.as_str()).collect();
+    assert!(names.iter().all(|name| listed.contains(&name.as_str())), "{listed:?}");
+    let arrived: Vec<_> = driver.viewer.arrivals().iter().map(|arrival| arrival.name.as_str()).collect();
+    assert!(arrived.iter().any(|name| name.starts_with("rock.rlv from")), "{arrived:?}");
 }
 
 #[test]
