@@ -123,10 +123,35 @@ impl Program<'_> {
         let compiled = target.join(TARGET).join(folder).join(format!("{library}.wasm"));
         let mut bindgen = Bindgen::new();
         let result = bindgen.input_path(compiled).web(true).and_then(|bindgen| {
-            bindgen.typescript(false).remove_name_section(profile != "dev").generate(out)
+            bindgen.typescript(false).remove_name_section(profile != "dev").generate_output()
         });
-        result.map_err(|error| format!("{error:#}"))
+        let text = |error| format!("{error:#}");
+        let mut bound = result.map_err(text)?;
+        let mut names = Vec::new();
+        if profile == SMALL {
+            for import in bound.wasm_mut().imports.iter_mut() {
+                let short = format!("_{:x}", names.len());
+                names.push((std::mem::replace(&mut import.name, short.clone()), short));
+            }
+        }
+        bound.emit(out).map_err(text)?;
+        rename(&out.join(format!("{library}.js")), &names)
     }
+}
+
+/// Gives the functions of a script, which a program imports, other names. The names of wasm-bindgen have hashes, which are
+/// a part of the program's size.
+fn rename(script: &Path, names: &[(String, String)]) -> Result<(), String> {
+    let text = |error: std::io::Error| format!("{}: {error}", script.display());
+    let mut code = std::fs::read_to_string(script).map_err(text)?;
+    for (name, short) in names {
+        let key = format!(" {name}: ");
+        if code.matches(&key).count() != 1 {
+            return Err(format!("{}: {name} must be there once", script.display()));
+        }
+        code = code.replace(&key, &format!(" {short}: "));
+    }
+    std::fs::write(script, code).map_err(text)
 }
 
 /// The largest size of the page's WebAssembly and JavaScript together, with brotli, in bytes.

@@ -494,7 +494,13 @@ impl ApplicationHandler<Told> for Page {
             Told::Back => {}
             Told::Wake => {}
             Told::Opened(opened) => {
-                running.viewer = Some(Shown::new(&running.window, *opened, &self.proxy));
+                let mut shown = Shown::new(&running.window, *opened, &self.proxy);
+                // The canvas may have got the focus before the device was there.
+                let focus = WindowEvent::Focused(running.window.has_focus());
+                for event in running.missed.drain(..).chain([focus]) {
+                    let _ = shown.input.on_window_event(&running.window, &event);
+                }
+                running.viewer = Some(shown);
             }
             Told::Failed(why) => return fail(&why),
             Told::Dropped(files) => {
