@@ -63,6 +63,7 @@ bless: adapter
 lint: setup
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --all-targets -- -D warnings
+	$(CARGO) clippy --test page -- -D warnings
 	$(CARGO) clippy -p relievo -p relievo-samples --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps --document-private-items
 

@@ -91,7 +91,7 @@ impl Scene {
     /// ```no_run
     /// # use relievo::scene::{ObjectId, Scene, TerrainHole};
     /// # fn example(scene: &mut Scene, land: ObjectId) -> Result<(), relievo::Error> {
-    /// scene.set_terrain_holes(land, &[TerrainHole { at: [120.0, -45.5], radius: 3.0 }])?;
+    /// scene.set_terrain_holes(land, &[TerrainHole::Circle { at: [120.0, -45.5], radius: 3.0 }])?;
     /// # Ok(())
     /// # }
     /// ```

@@ -23,12 +23,23 @@ pub(super) struct TerrainEntry {
     /// Extent of endless terrain; `None` if `patches` are the terrain.
     pub endless: Option<EndlessLimits>,
     /// Holes of endless terrain.
-    pub holes: Option<Vec<TerrainHole>>,
+    pub holes: Option<Vec<HoleEntry>>,
     /// The elevation map of endless terrain.
     pub elevation: Option<ElevationEntry>,
     /// Files of injected heights, and how these are injected.
     pub features: Vec<PathBuf>,
     pub feature_mode: FeatureMode,
+}
+
+/// A hole, whose image is read later.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum HoleEntry {
+    Circle(TerrainHole),
+    /// An image whose dark pixels are samples of the hole, and column and row of its first pixel.
+    Image {
+        file: PathBuf,
+        first: [i32; 2],
+    },
 }
 
 /// An elevation map: an image, and where it lies.

@@ -9,13 +9,14 @@ use image::{DynamicImage, Rgba, RgbaImage};
 
 use super::builtin::{BuiltIns, NoBuiltIns};
 use super::entries::{
-    ElevationEntry, EntryKind, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Source, TerrainEntry,
+    ElevationEntry, EntryKind, HoleEntry, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Source,
+    TerrainEntry,
 };
 use super::spec::SceneFile;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::Error;
 use crate::asset::{Mesh, Model};
-use crate::scene::Relief;
+use crate::scene::{Relief, SampleMask, TerrainHole};
 use crate::skinning::{
     Examined, add_levels, add_levels_and_at_rest, at_rest, join_levels_in, sparse_poses_of,
 };
@@ -34,6 +35,8 @@ pub struct LoadedScene {
     pub(super) objects: Vec<Loaded>,
     /// The textures of the terrain's zones.
     pub(super) textures: Vec<TerrainTexture>,
+    /// The holes of endless terrain; `None` for terrain that has none and gets none.
+    pub(super) holes: Option<Vec<TerrainHole>>,
     /// The elevation map of endless terrain.
     pub(super) elevation: Option<Arc<ElevationTiles>>,
     /// The injected heights of the terrain.
@@ -156,8 +159,9 @@ impl SceneFile {
         let elevation = self.terrain.as_ref().map(|terrain| files.elevation(terrain)).transpose()?.flatten();
         let features = self.terrain.as_ref().map(|terrain| files.features(terrain)).transpose()?;
         let features = features.unwrap_or_default();
+        let holes = self.terrain.as_ref().map(|terrain| files.holes(terrain)).transpose()?.flatten();
         let objects = files.objects(&self.objects)?;
-        Ok(LoadedScene { file: self.clone(), objects, textures, elevation, features })
+        Ok(LoadedScene { file: self.clone(), objects, textures, holes, elevation, features })
     }
 }
 
@@ -205,6 +209,22 @@ impl<'a> Files<'a> {
         let layout = ElevationLayout { first, spacing, ..map.layout };
         let tiles = ElevationTiles::new(&terrain.recipe.config, &ElevationMap { layout, margin, ..map });
         Ok(Some(Arc::new(tiles.map_err(|error| error.below("terrain.elevation"))?)))
+    }
+
+    /// The holes of a terrain.
+    fn holes(&self, terrain: &TerrainEntry) -> Result<Option<Vec<TerrainHole>>, InputError> {
+        let hole = |(index, entry): (usize, &HoleEntry)| match entry {
+            HoleEntry::Circle(hole) => Ok(hole.clone()),
+            HoleEntry::Image { file, first } => {
+                let path = format!("terrain.holes[{index}].image");
+                let image = self.decoded(&path, file)?.into_luma8();
+                let is_hole: Vec<bool> = image.iter().map(|brightness| *brightness < 128).collect();
+                let mask = SampleMask::new(*first, [image.width(), image.height()], &is_hole);
+                Ok(TerrainHole::Samples(mask.map_err(|error| error.below(&path))?))
+            }
+        };
+        let holes = terrain.holes.as_ref();
+        holes.map(|holes| holes.iter().enumerate().map(hole).collect()).transpose()
     }
 
     /// The injected heights of a terrain.
@@ -591,6 +611,14 @@ mod tests {
         assert_eq!(files, [Path::new("map.png")]);
         let info = crate::terrain::elevation::ElevationSource::info(&*scene.elevation.expect("a map"));
         assert_eq!(info.layout, ElevationLayout { spacing: 4, first: [-3, 2], size: [12, 9] });
+        let holes = r#""endless": true, "holes": [{"at": [1, 2], "radius": 3}, {"image": "map.png", "first": [-2, 5]}]"#;
+        let (scene, files) = loaded(holes).expect("holes");
+        assert_eq!(files, [Path::new("map.png")]);
+        // The brightness is 5000 / 65535 more in each column.
+        let is_hole: Vec<bool> = (0..9 * 12).map(|at| at % 12 < 7).collect();
+        let mask = SampleMask::new([-2, 5], [12, 9], &is_hole).expect("valid");
+        let circle = TerrainHole::Circle { at: [1.0, 2.0], radius: 3.0 };
+        assert_eq!(scene.holes, Some(vec![circle, TerrainHole::Samples(mask)]));
         for terrain in [r#""features": ["road.json"]"#, r#""endless": true, "features": ["road.json"]"#] {
             let (scene, files) = loaded(&format!(r#"{terrain}, "featureMode": "additive""#)).expect("loaded");
             assert_eq!((scene.features.len(), files), (2, vec![Path::new("road.json").to_path_buf()]));

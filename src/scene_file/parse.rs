@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::{DVec3, Vec3};
 
 use super::camera::{CameraKey, CameraPath, FIELDS_OF_VIEW};
-use super::entries::{ElevationEntry, ObjectEntry, Spot, TerrainEntry};
+use super::entries::{ElevationEntry, HoleEntry, ObjectEntry, Spot, TerrainEntry};
 use super::json::{At, COORDINATE, Fields, Json};
 use super::parse_lod::quality;
 use super::parse_object::{character, mesh};
@@ -149,15 +149,8 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
     let modes = [("keep", FeatureMode::Keep), ("additive", FeatureMode::Additive)];
     let feature_mode = fields.one_of("featureMode", modes, FeatureMode::Keep)?;
     if let Some(limits) = endless(&fields, &recipe.config)? {
-        let hole = |at: At<'_>| {
-            let own = at.fields(&["at", "radius"])?;
-            let hole = TerrainHole {
-                at: own.need("at", "the middle: x and z")?.numbers::<2>(-MOST_VIEW, MOST_VIEW)?,
-                radius: own.need("radius", "in world units")?.number(1e-3, MOST_VIEW)?,
-            };
-            Ok::<_, InputError>(hole)
-        };
-        let holes = fields.maybe("holes", |at| at.list(0, MOST_HOLES)?.into_iter().map(hole).collect())?;
+        let holes = |at: At<'_>| at.list(0, MOST_HOLES)?.iter().map(hole).collect();
+        let holes = fields.maybe("holes", holes)?;
         let elevation = fields.maybe("elevation", |at| elevation(&at))?;
         let (patches, endless) = (Vec::new(), Some(limits));
         let target = None;
@@ -194,21 +187,42 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
     Ok(TerrainEntry { recipe, patches, target, endless, holes, elevation, features, feature_mode })
 }
 
+fn hole(at: &At<'_>) -> Result<HoleEntry, InputError> {
+    let own = at.fields(&["at", "radius", "image", "first"])?;
+    if let Some(image) = own.get("image") {
+        if let Some(other) = ["at", "radius"].into_iter().find_map(|name| own.get(name)) {
+            return Err(other.error("must not be given beside image"));
+        }
+        return Ok(HoleEntry::Image { file: image.text()?.into(), first: first_sample(&own)? });
+    }
+    if let Some(first) = own.get("first") {
+        return Err(first.error("must be given beside image only"));
+    }
+    let at = own.need("at", "the middle: x and z; or an image")?.numbers::<2>(-MOST_VIEW, MOST_VIEW)?;
+    let radius = own.need("radius", "in world units")?.number(1e-3, MOST_VIEW)?;
+    Ok(HoleEntry::Circle(TerrainHole::Circle { at, radius }))
+}
+
+/// Column and row of the first pixel of an image.
+fn first_sample(fields: &Fields<'_>) -> Result<[i32; 2], InputError> {
+    let first = fields.maybe("first", |at| {
+        let both = at.list(2, 2)?;
+        Ok([both[0].whole(-MOST_SAMPLE, MOST_SAMPLE)?, both[1].whole(-MOST_SAMPLE, MOST_SAMPLE)?])
+    })?;
+    Ok(first.unwrap_or_default().map(|at| at as i32))
+}
+
 fn elevation(at: &At<'_>) -> Result<ElevationEntry, InputError> {
     let fields = at.fields(&["file", "range", "first", "spacing", "margin"])?;
     let most = HEIGHT_LIMIT as f64 / HEIGHT_ONE;
     let whole = |name: &str, least: i64, most: i64, otherwise: i64| {
         Ok::<_, InputError>(fields.maybe(name, |at| at.whole(least, most))?.unwrap_or(otherwise))
     };
-    let first = fields.maybe("first", |at| {
-        let both = at.list(2, 2)?;
-        Ok([both[0].whole(-MOST_SAMPLE, MOST_SAMPLE)?, both[1].whole(-MOST_SAMPLE, MOST_SAMPLE)?])
-    })?;
     let range = fields.need("range", "the heights of black and white")?.numbers::<2>(-most, most)?;
     Ok(ElevationEntry {
         file: fields.need("file", "an image of 16-bit grey")?.text()?.into(),
         range: range.map(|height| height as f32),
-        first: first.unwrap_or_default().map(|at| at as i32),
+        first: first_sample(&fields)?,
         spacing: whole("spacing", 1, 1 << 20, 1)? as u32,
         margin: whole("margin", 0, 1 << 20, 0)? as u32,
     })

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use super::camera::CameraPath;
-use super::entries::{EntryKind, ObjectEntry, Source, TerrainEntry};
+use super::entries::{EntryKind, HoleEntry, ObjectEntry, Source, TerrainEntry};
 use crate::asset::Light;
 use crate::scene::{Quality, Transition};
 use crate::terrain::config::ZoneTexture;
@@ -72,6 +72,11 @@ impl SceneFile {
         found.extend(self.terrain.iter().flat_map(|terrain| terrain.features.clone()));
         let elevation = self.terrain.iter().filter_map(|terrain| terrain.elevation.as_ref());
         found.extend(elevation.map(|elevation| elevation.file.clone()));
+        let holes = self.terrain.iter().filter_map(|terrain| terrain.holes.as_ref()).flatten();
+        found.extend(holes.filter_map(|hole| match hole {
+            HoleEntry::Image { file, .. } => Some(file.clone()),
+            HoleEntry::Circle(_) => None,
+        }));
         let zones = self.terrain.iter().flat_map(|terrain| &terrain.recipe.config.zones);
         found.extend(zones.filter_map(|zone| match &zone.texture {
             Some(ZoneTexture::File(path)) => Some(path.clone()),

@@ -108,7 +108,7 @@ impl LoadedScene {
                 Some(limits) => source.with_limits(limits),
                 None => source,
             };
-            let source = match &terrain.holes {
+            let source = match &self.holes {
                 Some(holes) => source.with_holes(holes.clone()),
                 None => source,
             };

@@ -9,7 +9,7 @@ use relievo::ops::terrain::smooth::reference::smooth;
 use relievo::ops::terrain::window::Region;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
-    Camera, EndlessLimits, ObjectId, Placement, Quality, Ray, Scene, TerrainConfig, TerrainHole,
+    Camera, EndlessLimits, ObjectId, Placement, Quality, Ray, SampleMask, Scene, TerrainConfig, TerrainHole,
     TerrainSource, View,
 };
 
@@ -383,18 +383,19 @@ fn nodes_are_made_again_after_a_loss() {
 fn holes_are_left_out_and_closed_again() {
     let config = config();
     let source = TerrainSource::endless(config.clone());
-    let hole = TerrainHole { at: [24.5, -60.0], radius: 9.25 };
-    let mut world = World::of(&source.clone().with_holes(vec![hole]), [160, 120]);
-    let top = truth(&config, hole.at[0], hole.at[1]) + 60.0;
-    let (eye, target) = ([hole.at[0], top, hole.at[1] + 25.0], [hole.at[0], top - 60.0, hole.at[1]]);
+    let (middle, radius) = ([24.5, -60.0], 9.25);
+    let hole = TerrainHole::Circle { at: middle, radius };
+    let mut world = World::of(&source.clone().with_holes(vec![hole.clone()]), [160, 120]);
+    let top = truth(&config, middle[0], middle[1]) + 60.0;
+    let (eye, target) = ([middle[0], top, middle[1] + 25.0], [middle[0], top - 60.0, middle[1]]);
     let camera = Camera::looking_at_world(eye, target, 0.9, [0.5, 12_000.0], world.raw.size);
     world.view.set(camera).expect("valid");
     world.settle();
     let drawn = world.positions(&camera);
     // A sample lies in the hole or not; a triangle reaches a sample's distance further at most.
-    let away = |place: &DVec3| (place.x - hole.at[0]).hypot(place.z - hole.at[1]);
+    let away = |place: &DVec3| (place.x - middle[0]).hypot(place.z - middle[1]);
     let nearest = drawn.iter().flatten().map(away).fold(f64::INFINITY, f64::min);
-    assert!(nearest > hole.radius - 0.8 && nearest < hole.radius + 1.5, "{nearest}");
+    assert!(nearest > radius - 0.8 && nearest < radius + 1.5, "{nearest}");
     let left_out = drawn.iter().filter(|place| place.is_none()).count();
     assert!((700..6_000).contains(&left_out), "{left_out}");
     for (pixel, place) in drawn.iter().enumerate().step_by(37) {
@@ -406,8 +407,8 @@ fn holes_are_left_out_and_closed_again() {
         }
     }
     let ground = |world: &World, at: [f64; 2]| world.scene.ground(world.land, at[0], at[1]).expect("valid");
-    assert_eq!(ground(&world, hole.at), None);
-    assert!(ground(&world, [hole.at[0] + 11.0, hole.at[1]]).is_some());
+    assert_eq!(ground(&world, middle), None);
+    assert!(ground(&world, [middle[0] + 11.0, middle[1]]).is_some());
     // Closed again, the picture is that of terrain without holes; opened again, it is the first one.
     let open = picture(&mut world);
     world.scene.set_terrain_holes(world.land, &[]).expect("changed");
@@ -417,18 +418,36 @@ fn holes_are_left_out_and_closed_again() {
     whole.settle();
     let closed = picture(&mut world);
     assert!(closed == picture(&mut whole) && closed != open);
-    assert!(ground(&world, hole.at).is_some());
-    world.scene.set_terrain_holes(world.land, &[hole]).expect("changed");
+    assert!(ground(&world, middle).is_some());
+    world.scene.set_terrain_holes(world.land, &[hole.clone()]).expect("changed");
     world.settle();
     assert!(picture(&mut world) == open);
+    // Sample by sample, the same hole is the same picture.
+    let (first, size) = ([10, -80], [30_u32, 40]);
+    let is_hole = |at: u32| {
+        let [column, row] = [at % size[0], at / size[0]].map(|at| at as i32);
+        let place =
+            [first[0] + column, first[1] + row].map(|sample| f64::from(sample) * config.terrain_scale);
+        (place[0] - middle[0]).hypot(place[1] - middle[1]) <= radius
+    };
+    let is_hole: Vec<bool> = (0..size[0] * size[1]).map(is_hole).collect();
+    assert!(is_hole.contains(&true));
+    let mask = TerrainHole::Samples(SampleMask::new(first, size, &is_hole).expect("valid"));
+    world.scene.set_terrain_holes(world.land, &[]).expect("changed");
+    world.settle();
+    assert!(picture(&mut world) == closed);
+    world.scene.set_terrain_holes(world.land, &[mask]).expect("changed");
+    world.settle();
+    assert!(picture(&mut world) == open);
+    assert_eq!(ground(&world, middle), None);
     // From afar it is narrower than a pixel, and needs no finest nodes.
     let far = world.above([0.0, 3_000.0], 9_000.0);
     world.view.set(far).expect("valid");
     world.settle();
     assert_eq!(world.scene.terrain_statistics(world.land).expect("endless").levels[0], 0);
     let refused = |hole: TerrainHole| hole.validate().expect_err("refused").path;
-    assert_eq!(refused(TerrainHole { radius: 0.0, ..hole }), "radius");
-    assert_eq!(refused(TerrainHole { at: [f64::NAN, 0.0], ..hole }), "at");
+    assert_eq!(refused(TerrainHole::Circle { at: middle, radius: 0.0 }), "radius");
+    assert_eq!(refused(TerrainHole::Circle { at: [f64::NAN, 0.0], radius }), "at");
     let without = whole.scene.set_terrain_holes(whole.land, &[hole]).expect_err("refused").to_string();
     assert!(without.contains("with_holes"), "{without}");
 }

@@ -25,7 +25,7 @@ pub(super) use device::{listed, made};
 pub(crate) use drawable::TerrainDrawable;
 #[cfg(test)]
 pub(crate) use drawable::{TerrainGeometry, patch_indices};
-pub use endless::{EndlessLimits, EndlessStatistics, TerrainHole};
+pub use endless::{EndlessLimits, EndlessStatistics, SampleMask, TerrainHole};
 #[cfg(test)]
 pub(crate) use in_view::nowhere;
 use morphing::Morphing;

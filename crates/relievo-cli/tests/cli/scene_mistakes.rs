@@ -16,6 +16,12 @@ const ENDLESS_FAR: &str =
 const ENDLESS_HOLE: &str = r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "hole"}, "endless": true,
     "holes": [{"at": [1, 2], "radius": 0}]}"#;
 
+/// Endless terrain with holes of two kinds at once.
+const ENDLESS_HOLES: &str = r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "hole"}, "endless": true,
+    "holes": [{"image": "mask.png", "radius": 2}]}"#;
+const ENDLESS_FIRST: &str = r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "hole"}, "endless": true,
+    "holes": [{"at": [1, 2], "radius": 3, "first": [1, 2]}]}"#;
+
 /// Endless terrain with an elevation map whose margin is none.
 const ELEVATION: &str = r#"{"config": {"patchSize": 65, "scaleFactor": 9, "seed": "e", "coarseLevels": 1}, "endless": true,
     "elevation": {"file": "map.png", "range": [-20, 20], "spacing": 8, "first": [-3, 4], "margin": -2}}"#;
@@ -71,6 +77,8 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     ("/terrain/features", r#"["gone.json"]"#, "terrain.features[0] = gone.json", "cannot be read"),
     ("/terrain/featureMode", "\"add\"", "terrain.featureMode = add", "keep"),
     ("/terrain/elevation", "{}", "terrain.endless = missing", "elevation map"),
+    ("/terrain", ENDLESS_HOLES, "terrain.holes[0].radius = 2", "beside image"),
+    ("/terrain", ENDLESS_FIRST, "terrain.holes[0].first = [1,2]", "beside image only"),
     ("/terrain", ELEVATION, "terrain.elevation.margin = -2", "0..="),
     ("/terrain", ENDLESS_FAR, "terrain.view = 1000", "coarseLevels"),
     ("/terrain", ENDLESS, "meshes[1].scatter.area = missing", "terrain is endless"),

@@ -118,6 +118,7 @@ fn members() {
     let _ = Scene::terrain_statistics; // Scene::terrain_statistics
     let _ = Scene::set_terrain_holes; // Scene::set_terrain_holes
     let _ = Scene::set_terrain_features; // Scene::set_terrain_features
+    let _ = size_of::<relievo::scene::SampleMask>; // SampleMask
     let _ = relievo::scene::TerrainSource::with_holes; // TerrainSource::with_holes
     let _ = relievo::scene::TerrainSource::with_elevation; // TerrainSource::with_elevation
     let _ = |tiles: relievo::scene::ElevationTiles| tiles.write("".as_ref(), || ()); // ElevationTiles::write

@@ -14,7 +14,7 @@ use super::site::{Files, is_model, read_file};
 use crate::sha256;
 
 /// Fields of a scene file that hold names of files, or lists of such names.
-const FIELDS: [&str; 7] = ["file", "levels", "relief", "albedo", "normal", "texture", "features"];
+const FIELDS: [&str; 8] = ["file", "levels", "relief", "albedo", "normal", "texture", "features", "image"];
 
 const BUILT_IN: &str = "builtin:";
 

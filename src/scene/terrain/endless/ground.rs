@@ -5,8 +5,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::DVec3;
 
-use super::TerrainHole;
 use super::elevation::Elevation;
+use super::hole::TerrainHole;
 use crate::scene::object_kind::UnitRay;
 use crate::scene::ray::SurfaceHit;
 use crate::terrain::config::TerrainConfig;
@@ -64,10 +64,10 @@ impl FinestGround {
         let [u, v] = [x, z].map(|at| at / scale);
         let [column, row] = [u.floor(), v.floor()];
         // The diagonal of a cell runs from south-west to north-east.
-        let corner = if (u - column) + (v - row) <= 1.0 { [0.0, 0.0] } else { [1.0, 1.0] };
-        let corners = [corner, [1.0, 0.0], [0.0, 1.0]];
-        let samples = corners.map(|[x, z]| [(column + x) * scale, (row + z) * scale]);
-        holes.iter().any(|hole| samples.iter().any(|sample| hole.contains(*sample)))
+        let corner = if (u - column) + (v - row) <= 1.0 { [0, 0] } else { [1, 1] };
+        let corners = [corner, [1, 0], [0, 1]];
+        let samples = corners.map(|[x, z]| [column as i64 + x, row as i64 + z]);
+        holes.iter().any(|hole| samples.iter().any(|sample| hole.contains(*sample, scale)))
     }
 
     /// The first hit of a ray within a box of the world, not in a hole. `origin` is the ray's in world units.

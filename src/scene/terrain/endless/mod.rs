@@ -5,6 +5,7 @@
 
 mod elevation;
 mod ground;
+mod hole;
 mod in_view;
 mod pool;
 
@@ -48,6 +49,7 @@ use crate::terrain::window::Region;
 use crate::{Error, InputError};
 use elevation::{Beyond, Elevation, NodeElevation};
 use ground::FinestGround;
+pub use hole::{SampleMask, TerrainHole};
 use in_view::{EndlessInView, ViewTable};
 use pool::{BATCH, FoundFacts, Grid, NewNode, Pool, PoolSize};
 
@@ -127,38 +129,6 @@ impl EndlessLimits {
             format!("must be at least {least} for this view distance; raise coarse_levels instead")
         })?;
         Ok(distance)
-    }
-}
-
-/// A hole in endless terrain: triangles with a corner in this circle are left out.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TerrainHole {
-    /// World position of the middle: x and z.
-    pub at: [f64; 2],
-    /// Radius in world units, above 0.
-    pub radius: f64,
-}
-
-impl TerrainHole {
-    /// Checks that all numbers are finite and the radius is above 0.
-    ///
-    /// # Errors
-    /// [`InputError`] that names `at` or `radius`.
-    pub fn validate(&self) -> Result<(), InputError> {
-        let [x, z] = self.at;
-        InputError::check(x.is_finite() && z.is_finite(), "at", format!("[{x}, {z}]"), || "must be finite")?;
-        let is_radius = self.radius > 0.0 && self.radius.is_finite();
-        InputError::check(is_radius, "radius", self.radius, || "must be above 0 and finite")
-    }
-
-    /// Whether the hole contains a world position.
-    pub(super) fn contains(&self, at: [f64; 2]) -> bool {
-        (at[0] - self.at[0]).hypot(at[1] - self.at[1]) <= self.radius
-    }
-
-    /// Whether the hole reaches into a square with its smallest corner at `corner`.
-    pub(super) fn reaches(&self, corner: [f64; 2], edge: f64) -> bool {
-        self.contains(std::array::from_fn(|axis| self.at[axis].clamp(corner[axis], corner[axis] + edge)))
     }
 }
 
@@ -457,11 +427,10 @@ impl Endless {
 
     /// The error of a node because of holes, which only the finest nodes have: the width of the widest hole that is missing.
     fn hole_error(&self, node: Node) -> f32 {
-        let edge = self.edge(node.level);
+        let (edge, scale) = (self.edge(node.level), self.config().terrain_scale);
         let corner = node.at.map(|at| f64::from(at) * edge);
-        let missing = self.holes.iter().flatten().filter(|hole| node.level > 0 && hole.reaches(corner, edge));
-        let width = |hole: &TerrainHole| 2.0 * (hole.radius + self.config().terrain_scale) as f32;
-        missing.map(width).fold(0.0, f32::max)
+        let missing = self.holes.iter().flatten().filter(|_| node.level > 0);
+        missing.map(|hole| hole.width_in(corner, edge, scale)).fold(0.0, f32::max)
     }
 
     /// Replaces the holes.

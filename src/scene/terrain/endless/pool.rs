@@ -2,8 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use super::TerrainHole;
 use super::elevation::NodeElevation;
+use super::hole::TerrainHole;
 use crate::gpu::{Buffer, Gpu, Job, ReadbackRing, Staged, Upload as _};
 use crate::scene::FRAMES_IN_FLIGHT;
 use crate::shared::render::scene_terrain::TerrainPatch;
@@ -460,14 +460,14 @@ fn hole_bits(config: &TerrainConfig, grid: Grid, node: Node, holes: &[TerrainHol
     let corner = first.map(|at| at as f64 * scale);
     let edge = f64::from(grid.cells) * scale;
     let near: Vec<&TerrainHole> =
-        holes.iter().filter(|hole| node.level == 0 && hole.reaches(corner, edge)).collect();
+        holes.iter().filter(|hole| node.level == 0 && hole.width_in(corner, edge, scale) > 0.0).collect();
     if near.is_empty() {
         return None;
     }
     let mut words = vec![0; grid.hole_words()];
     for bit in 0..size * size {
-        let sample = [first[0] + bit % size, first[1] + bit / size].map(|at| at as f64 * scale);
-        if near.iter().any(|hole| hole.contains(sample)) {
+        let sample = [first[0] + bit % size, first[1] + bit / size];
+        if near.iter().any(|hole| hole.contains(sample, scale)) {
             words[bit as usize / 32] |= 1 << (bit % 32);
         }
     }
