@@ -53,6 +53,9 @@ pub struct View {
     /// The point that the camera looks at.
     #[arg(long, value_name = "X,Y,Z", requires = "at", allow_hyphen_values = true, value_parser = |text: &str| point("look", text))]
     look: Option<DVec3>,
+    /// The direction towards the light. Default: the scene's own.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = |text: &str| point("light", text))]
+    light: Option<DVec3>,
     /// The time of the scene in seconds, which then stands still.
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     time: Option<f64>,
@@ -103,6 +106,7 @@ impl View {
             pixels: *pixels,
             triangles: *triangles,
             camera: self.at.zip(self.look).map(|(at, look)| [at, look]),
+            light: self.light,
             time: *time,
             colors: self.levels.then_some(Colors::Levels),
         })

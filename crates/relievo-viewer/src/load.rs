@@ -281,7 +281,8 @@ impl Loader<'_> {
             let model = fetching.coarsest(&url, |why| self.waits(why)).await?;
             return Ok((Document::of_model(name, &model), false));
         }
-        self.fetch(name, source).await.map_err(|error| Error::file(name, error))?;
+        let called = name.display().to_string();
+        self.fetch((name, called), source).await.map_err(|error| Error::file(name, error))?;
         let bytes = self.files.borrow()[name].clone();
         let text = || {
             str::from_utf8(&bytes)
@@ -305,28 +306,24 @@ impl Loader<'_> {
     /// Reads the files that a scene names.
     async fn fetch_all(&self, file: &SceneFile, source: &Throttled<'_>) -> Result<(), InputError> {
         for name in file.files() {
-            self.teller.step(format!("reading {}", name.display())).await;
+            let called = file.package_name(&name).map_or_else(|| name.display().to_string(), str::to_owned);
+            self.teller.step(format!("reading {called}")).await;
             // One that is missing is told by the scene, with the path in it.
-            let _ = self.fetch(&name, source).await;
+            let _ = self.fetch((&name, called), source).await;
         }
         Ok(())
     }
 
-    /// Reads a file, if it was not read before.
-    async fn fetch(&self, name: &Path, source: &Throttled<'_>) -> io::Result<()> {
+    /// Reads a file, if it was not read before. `called` is what the panel calls it.
+    async fn fetch(&self, (name, called): (&Path, String), source: &Throttled<'_>) -> io::Result<()> {
         if self.files.borrow().contains_key(name) {
             return Ok(());
         }
         let start = web_time::Instant::now();
         let bytes = source.read(name).await?;
         let seconds = start.elapsed().as_secs_f64();
-        let name = name.to_owned();
-        self.teller.tell(News::Arrived(Arrival {
-            name: name.display().to_string(),
-            bytes: bytes.len(),
-            seconds,
-        }));
-        self.files.borrow_mut().insert(name, bytes);
+        self.teller.tell(News::Arrived(Arrival { name: called, bytes: bytes.len(), seconds }));
+        self.files.borrow_mut().insert(name.to_owned(), bytes);
         Ok(())
     }
 
@@ -357,7 +354,8 @@ impl Loader<'_> {
             }
             for name in lacking {
                 self.teller.step(format!("reading {}", name.display())).await;
-                if let Err(error) = self.fetch(&name, source).await {
+                let called = name.display().to_string();
+                if let Err(error) = self.fetch((&name, called), source).await {
                     refused.insert(name, (error.kind(), error.to_string()));
                 }
             }

@@ -89,28 +89,39 @@ fn status_line(viewer: &mut Viewer, ui: &mut Ui) {
                 viewer.shows_keys = !viewer.shows_keys;
             }
             ui.separator();
-            ui.add(egui::Label::new(status(viewer)).truncate());
+            ui.add(egui::Label::new(status(viewer)).truncate()).on_hover_text(BOUND);
         });
     });
 }
+
+/// What the bound of the error is.
+const BOUND: &str = "An upper bound for everything that is drawn. It is above the limit where memory or a budget coarsens levels, \
+                     while detail is on its way, and very near to a model of a package, whose vertices are rounded.";
 
 /// What the status line says.
 fn status(viewer: &Viewer) -> String {
     if let Some(step) = viewer.step() {
         return format!("{step} …");
     }
-    if viewer.is_resting() {
-        return "resting: nothing is drawn until something is pressed or moved".to_owned();
-    }
     if let Some((why, seconds)) = viewer.shown.as_ref().and_then(crate::shown::Shown::waits) {
         return format!("the server does not answer; it is asked again in {seconds:.0} s ({why})");
+    }
+    if viewer.compares && viewer.shown.as_ref().is_some_and(|shown| shown.full.is_none()) {
+        return "fetching full detail …".to_owned();
     }
     let history = &viewer.history;
     let Some(last) = history.last() else { return "nothing is open".to_owned() };
     let frame = history.median(30, |sample| (sample.frame > 0.0).then_some(sample.frame));
-    let time = frame.map_or_else(String::new, |frame| format!("{frame:.1} ms a frame · "));
+    let time = match frame {
+        _ if viewer.is_resting() => "resting until something is pressed or moved · ".to_owned(),
+        Some(frame) => format!("{frame:.1} ms a frame · "),
+        None => String::new(),
+    };
+    let is_coming =
+        viewer.shown.as_ref().is_some_and(|shown| shown.is_streaming() || shown.stage.ready() < 1.0);
     let bound = match last.bound {
         Some(pixels) => format!("at most {pixels:.2} px off"),
+        None if is_coming => "detail is on its way".to_owned(),
         None => "no bound of the error".to_owned(),
     };
     let is_site = |shown: &crate::shown::Shown| shown.source.url(std::path::Path::new("")).is_some();

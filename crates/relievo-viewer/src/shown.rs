@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use relievo::asset::Light;
 use relievo::scene::{
-    Camera, Depth, LevelChoice, LevelOfDetail, ObjectId, Quality, Ray, Transition, ViewStatistics,
+    Camera, Depth, InstanceId, LevelChoice, LevelOfDetail, ObjectId, Quality, Ray, Transition, ViewStatistics,
 };
-use relievo::scene_file::WorldKind;
+use relievo::scene_file::{World, WorldKind};
 use relievo::{Error, InputError};
 use serde_json::Value;
 
@@ -78,6 +78,8 @@ pub struct Shown {
     applied: Option<(Levels, Vec<usize>)>,
     /// Whether somebody moved the camera.
     pub(crate) is_moved: bool,
+    /// What was drawn when that was last known.
+    last_sample: Sample,
 }
 
 impl Shown {
@@ -110,6 +112,7 @@ impl Shown {
             own,
             applied: None,
             is_moved: false,
+            last_sample: Sample::default(),
             stage,
         })
     }
@@ -117,6 +120,7 @@ impl Shown {
     /// Takes the same scene, built anew after a change that objects cannot follow. Camera, controls and time stay.
     pub(crate) fn rebuilt(&mut self, ready: Ready) -> Result<(), Error> {
         let time = self.time();
+        let place = self.chosen.as_ref().and_then(|chosen| place_of(&self.stage.world, chosen.instance));
         let other = Self::new(self.name.clone(), ready)?;
         self.document = other.document;
         self.known = other.known;
@@ -124,6 +128,11 @@ impl Shown {
         self.stage = other.stage;
         self.own = other.own;
         (self.applied, self.chosen, self.full) = (None, None, None);
+        if let Some((source, at)) = place
+            && let Some(instance) = instance_at(&self.stage.world, &source, at)
+        {
+            self.chosen = Some(overlay::Bones::choose(&mut self.stage.world, instance)?);
+        }
         Ok(self.stage.world.scene.advance(time as f32)?)
     }
 
@@ -406,16 +415,37 @@ impl Shown {
             .stage_times()
             .map(|times| [times.select, times.gate, times.sample, times.local_to_model, times.skin]);
         let seen = self.stage.seen();
-        Sample {
+        // What follows a new model or level is not known for some frames.
+        let Some(seen) = seen else {
+            return Sample { stages, bones: bones.unwrap_or(0.0), displacement, ..self.last_sample.clone() };
+        };
+        let sample = Sample {
             stages,
             bones: bones.unwrap_or(0.0),
-            triangles: seen.map_or(0, triangles) as f64,
-            bound: seen.map(|seen| f64::from(seen.pixels)).filter(|pixels| pixels.is_finite()),
-            levels: seen.map(mean_levels).unwrap_or_default(),
+            triangles: triangles(seen) as f64,
+            bound: Some(f64::from(seen.pixels)).filter(|pixels| pixels.is_finite()),
+            levels: mean_levels(seen),
             displacement,
             ..Sample::default()
-        }
+        };
+        self.last_sample = sample.clone();
+        sample
     }
+}
+
+/// The source of an instance's object, and the instance's number among all of it.
+fn place_of(world: &World, instance: InstanceId) -> Option<(String, usize)> {
+    world.objects.iter().find_map(|object| {
+        let all = world.scene.instances(object.object).ok()?;
+        Some((object.source.clone(), all.iter().position(|other| *other == instance)?))
+    })
+}
+
+/// The instance of an object with a source.
+fn instance_at(world: &World, source: &str, at: usize) -> Option<InstanceId> {
+    let of_source = world.objects.iter().filter(|object| object.kind == WorldKind::Character);
+    let object = of_source.into_iter().find(|object| object.source == source)?;
+    world.scene.instances(object.object).ok()?.get(at).copied()
 }
 
 /// Number of triangles that a view drew.

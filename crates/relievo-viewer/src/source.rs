@@ -112,6 +112,11 @@ impl Source for Bundled {
     }
 }
 
+/// Whether a name is the address of a file of a site.
+pub(crate) fn is_address(name: &str) -> bool {
+    name.starts_with("http://") || name.starts_with("https://")
+}
+
 /// The source of an absolute address.
 fn site(url: String) -> (String, Arc<dyn Source>) {
     let path = url.split(['?', '#']).next().unwrap_or_default();
@@ -162,7 +167,13 @@ impl Throttled<'_> {
     /// Reads a file of the source, and waits as long as its bytes take at the rate.
     pub async fn read(&self, name: &Path) -> io::Result<Arc<[u8]>> {
         let start = web_time::Instant::now();
-        let bytes = self.source.read(name).await?;
+        let bytes = match name.to_str().filter(|name| is_address(name)) {
+            Some(url) => {
+                let (name, site) = site(url.to_owned());
+                site.read(Path::new(&name)).await?
+            }
+            None => self.source.read(name).await?,
+        };
         if let Some(rate) = self.rate {
             let rest = 8.0 * bytes.len() as f64 / rate - start.elapsed().as_secs_f64();
             if rest > 0.0 {

@@ -20,6 +20,8 @@ pub struct Start {
     pub triangles: Option<u32>,
     /// The position of the camera and the point that it looks at.
     pub camera: Option<[DVec3; 2]>,
+    /// The direction towards the light.
+    pub light: Option<DVec3>,
     /// The time of the scene in seconds, which then stands still.
     pub time: Option<f64>,
     /// What surfaces are drawn in.
@@ -45,6 +47,7 @@ impl Start {
                 "time" => start.time = Some(number(name, &value)?),
                 "at" => ends[0] = Some(point(name, &value)?),
                 "look" => ends[1] = Some(point(name, &value)?),
+                "light" => start.light = Some(point(name, &value)?),
                 "levels" => start.colors = Some(Colors::Levels),
                 _ => {}
             }
@@ -72,6 +75,7 @@ impl Start {
             pixels: Some(shown.quality.pixels),
             triangles: shown.quality.has_triangles.then_some(shown.quality.triangles),
             camera: Some([at, look]),
+            light: Some(shown.light.direction.as_dvec3()),
             time: Some(shown.time()),
             colors: (colors == Colors::Levels).then_some(colors),
         }
@@ -84,6 +88,7 @@ impl Start {
         parts.extend(self.pixels.map(|pixels| ("pixels", pixels.to_string())));
         parts.extend(self.triangles.map(|triangles| ("triangles", triangles.to_string())));
         parts.extend(self.camera.iter().flat_map(|[at, look]| [("at", list(*at)), ("look", list(*look))]));
+        parts.extend(self.light.map(|light| ("light", list(light))));
         parts.extend(self.time.map(|time| ("time", format!("{time:.4}"))));
         parts
     }
@@ -108,7 +113,7 @@ impl Start {
 
     /// Gives a scene that was opened what the start asks for.
     pub(crate) fn apply(&self, shown: &mut Shown) {
-        let Self { pixels, triangles, camera, time, .. } = self;
+        let Self { pixels, triangles, camera, light, time, .. } = self;
         let own = shown.quality;
         shown.quality = QualityControls {
             pixels: pixels.unwrap_or(own.pixels),
@@ -119,6 +124,9 @@ impl Start {
         if let Some([at, look]) = camera {
             shown.take_camera();
             shown.eye = Eye::between(*at, *look);
+        }
+        if let Some(light) = light.filter(|light| *light != DVec3::ZERO) {
+            shown.light.direction = light.normalize().as_vec3();
         }
         if let Some(time) = time {
             // A time that is no number was refused before.
@@ -154,14 +162,16 @@ mod tests {
 
     #[test]
     fn addresses_say_what_to_open() {
-        let start =
-            Start::from_query("?scene=a%20b.glb&pixels=2.5&triangles=9&at=1,2,3&look=0,0,-1e3&utm=x&levels");
+        let start = Start::from_query(
+            "?scene=a%20b.glb&pixels=2.5&triangles=9&at=1,2,3&look=0,0,-1e3&light=0,2,-1&utm=x&levels",
+        );
         let camera = Some([DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.0, 0.0, -1000.0)]);
         let expected = Start {
             scene: Some("a b.glb".to_owned()),
             pixels: Some(2.5),
             triangles: Some(9),
             camera,
+            light: Some(DVec3::new(0.0, 2.0, -1.0)),
             time: None,
             colors: Some(Colors::Levels),
         };
@@ -169,7 +179,7 @@ mod tests {
         assert_eq!(Start::from_query(&start.clone().expect("read").query()), start);
         let command = start.expect("read").command([640, 400]);
         let expected = "relievo view 'a b.glb' --pixels=2.5 --triangles=9 --at=1.0000,2.0000,3.0000 \
-            --look=0.0000,0.0000,-1000.0000 --levels --size 640x400 --picture picture.png";
+            --look=0.0000,0.0000,-1000.0000 --light=0.0000,2.0000,-1.0000 --levels --size 640x400 --picture picture.png";
         assert_eq!(command, expected);
         assert_eq!(Start::from_query(""), Ok(Start::default()));
         for (query, path) in

@@ -322,6 +322,14 @@ impl Streaming {
         self.scene.packages().map(of).collect()
     }
 
+    /// Fetches what is lacking of all packages. Whether nothing is lacking any more, except what cannot be fetched.
+    pub fn fetch_all(&mut self) -> bool {
+        self.scene.fetch_all();
+        let is_done =
+            |package: PackageState| package.is_whole() || matches!(package.state, FetchState::Failed(_));
+        self.packages().into_iter().all(is_done)
+    }
+
     /// The packages that are whole, as files.
     pub fn whole(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let whole: BTreeSet<PathBuf> =

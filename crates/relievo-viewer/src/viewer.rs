@@ -78,6 +78,9 @@ struct Loading {
     purpose: Purpose,
     name: String,
     step: String,
+    began: Instant,
+    /// Number of transfers that had ended before.
+    arrivals: usize,
 }
 
 /// Paints what egui has laid out.
@@ -357,7 +360,8 @@ impl Viewer {
             Job { gpu: self.gpu.clone(), name, source, rate: self.settings.throttle, changed, fetching };
         let egui = self.egui.clone();
         let task = Task::start(job, move || egui.request_repaint());
-        self.loading = Some(Loading { task, purpose, name: shown, step: "starting".to_owned() });
+        let (step, began, arrivals) = ("starting".to_owned(), Instant::now(), self.arrivals.len());
+        self.loading = Some(Loading { task, purpose, name: shown, step, began, arrivals });
     }
 
     /// What the host has to do, once each.
@@ -428,7 +432,7 @@ impl Viewer {
         done
     }
 
-    /// Number of bytes that arrived since the viewer began, used or not.
+    /// Number of bytes that arrived since the scene was opened, used or not.
     pub fn bytes(&self) -> usize {
         let ended: usize = self.arrivals.iter().map(|arrival| arrival.bytes).sum();
         let streaming = self.shown.iter().flat_map(|shown| &shown.streaming);
@@ -500,6 +504,11 @@ impl Viewer {
                 }
                 News::Ready(ready) => {
                     let (purpose, name) = (loading.purpose, loading.name.clone());
+                    if purpose == Purpose::Open && self.shown.is_some() {
+                        // Numbers of the scene before count no more.
+                        (self.began, self.first_picture) = (loading.began, None);
+                        self.arrivals.drain(..loading.arrivals);
+                    }
                     self.loading = None;
                     if let Err(error) = self.take(purpose, name, *ready) {
                         self.notice = Some(error.to_string());
@@ -556,6 +565,10 @@ impl Viewer {
         if let Some(document) = shown.regated() {
             self.load(Purpose::Rebuild, name, source, Some(Changed { document, known }));
         } else if self.compares && shown.full.is_none() {
+            // Full detail needs whole packages; what is there of them is not fetched again.
+            if shown.streaming.as_mut().is_some_and(|streaming| !streaming.fetch_all()) {
+                return;
+            }
             let mut document = shown.document.clone();
             let mut known = known;
             known.add_files(shown.streaming.iter().flat_map(Streaming::whole));
@@ -722,7 +735,11 @@ impl Viewer {
         let Some(shown) = &mut self.shown else { return };
         let stem = Path::new(&shown.name).file_stem().map_or("scene".into(), |stem| stem.to_string_lossy());
         let name = format!("{stem}-view.json");
-        let bytes = shown.document().text().into_bytes();
+        // Beside the saved file, there are no files of a site.
+        let source = shown.source.clone();
+        let is_own = |name: &str| !name.starts_with("builtin:") && !crate::source::is_address(name);
+        let address = |name: &str| source.url(Path::new(name)).filter(|_| is_own(name));
+        let bytes = shown.document().renamed(address).text().into_bytes();
         self.request(Request::Save { name, bytes });
     }
 

@@ -121,6 +121,34 @@ pub(crate) async fn fetched(address: &str) -> io::Result<Vec<u8>> {
     Ok(Uint8Array::new(&body).to_vec())
 }
 
+/// The scenes of the server that the page comes from, as its catalog lists them. It is asked for them at the first call, and the
+/// answer wakes the page.
+pub(crate) fn offered(egui: &egui::Context) -> Vec<String> {
+    let known = OFFERED.with_borrow_mut(|offered| {
+        let known = offered.clone();
+        offered.get_or_insert_default();
+        known
+    });
+    if let (None, Some(catalog)) = (&known, absolute("catalog.json")) {
+        let egui = egui.clone();
+        spawn_local(async move {
+            // A page that no such server serves has none.
+            let Ok(text) = fetched(&catalog).await else { return };
+            let Ok(catalog) = serde_json::from_slice::<serde_json::Value>(&text) else { return };
+            let scenes = catalog["scenes"].as_array().into_iter().flatten();
+            let names = scenes.filter_map(|name| Some(name.as_str()?.to_owned())).collect();
+            OFFERED.set(Some(names));
+            egui.request_repaint();
+        });
+    }
+    known.unwrap_or_default()
+}
+
+thread_local! {
+    /// Scenes of the server, once somebody has asked for them.
+    static OFFERED: RefCell<Option<Vec<String>>> = const { RefCell::new(None) };
+}
+
 /// Completes after so many seconds.
 pub(crate) async fn sleep(seconds: f64) {
     let promise = js_sys::Promise::new(&mut |resolve, _| {

@@ -57,6 +57,8 @@ pub struct StreamedScene<T> {
     /// Packages of which something is shown.
     shown: BTreeSet<ModelKey>,
     loaded: Option<LoadedScene>,
+    /// Whether packages are fetched whole, whatever the views need.
+    fetches_all: bool,
 }
 
 impl<T: Transport> StreamedScene<T> {
@@ -65,7 +67,8 @@ impl<T: Transport> StreamedScene<T> {
         let mut fetcher = Fetcher::new(transport, options);
         let text = Some(fetcher.add_file(url));
         let (file, files, packages, shown, loaded) = Default::default();
-        Self { fetcher, url: url.to_owned(), text, file, files, packages, shown, loaded }
+        let url = url.to_owned();
+        Self { fetcher, url, text, file, files, packages, shown, loaded, fetches_all: false }
     }
 
     /// A scene file that is there already, whose names are relative to `url`. What the fetcher has of its files is not fetched
@@ -73,7 +76,8 @@ impl<T: Transport> StreamedScene<T> {
     pub fn with_file(file: SceneFile, url: &str, fetcher: Fetcher<T>) -> Self {
         let (files, packages, shown, loaded) = Default::default();
         let url = url.to_owned();
-        let mut own = Self { fetcher, url, text: None, file: None, files, packages, shown, loaded };
+        let (text, fetches_all) = (None, false);
+        let mut own = Self { fetcher, url, text, file: None, files, packages, shown, loaded, fetches_all };
         own.set_file(file);
         own
     }
@@ -186,6 +190,11 @@ impl<T: Transport> StreamedScene<T> {
         self.packages.iter().map(|(path, key)| (path.as_path(), *key))
     }
 
+    /// From now on, packages are fetched whole, whatever the views need.
+    pub fn fetch_all(&mut self) {
+        self.fetches_all = true;
+    }
+
     /// Whether all that views need is there, or cannot be fetched.
     pub fn is_settled(&self) -> bool {
         self.loaded.is_some() && self.fetcher.is_settled()
@@ -205,6 +214,9 @@ impl<T: Transport> StreamedScene<T> {
                     want.error = want.error.min(wanted.error);
                     want.weight += wanted.area;
                 }
+            }
+            if self.fetches_all {
+                (want.error, want.weight) = (0.0, want.weight.max(1.0));
             }
             wants.push(want);
         }

@@ -121,7 +121,7 @@ fn costs(shown: &mut Shown, ui: &mut Ui) {
     }
     egui::Grid::new("costs").num_columns(3).striped(true).show(ui, |ui| {
         for title in ["object: level", "instances", "triangles"] {
-            ui.label(egui::RichText::new(title).small());
+            ui.label(egui::RichText::new(title).small()).on_hover_text(LEVELS);
         }
         ui.end_row();
         for (object, name) in seen.objects.iter().zip(&names) {
@@ -137,6 +137,9 @@ fn costs(shown: &mut Shown, ui: &mut Ui) {
         }
     });
 }
+
+/// What a level's number is.
+const LEVELS: &str = "Level 0 is the finest that is there; a finer one that arrives becomes level 0. At most 8 of a package's levels are used.";
 
 /// A choice of one of several values.
 fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, all: &[(T, &str)], value: &mut T) {

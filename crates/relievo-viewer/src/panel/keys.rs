@@ -124,7 +124,7 @@ pub fn list(viewer: &mut Viewer, egui: &Context) {
         .resizable(false)
         .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
         .show(egui, |ui| {
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            egui::ScrollArea::both().show(ui, |ui| {
                 egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
                     for (keys, what) in KEYS {
                         ui.label(egui::RichText::new(keys).strong());

@@ -81,7 +81,11 @@ fn plot(ui: &mut Ui, title: &str, series: &[Series]) {
 
 /// The axis of values, whose marks all have their number.
 fn values() -> AxisHints<'static> {
-    AxisHints::new_y().min_thickness(44.0).label_spacing(egui::Rangef::new(8.0, 12.0))
+    let hints = AxisHints::new_y().min_thickness(44.0).label_spacing(egui::Rangef::new(8.0, 12.0));
+    hints.formatter(|GridMark { value, step_size }, _| {
+        let decimals = (-step_size.log10().floor()).max(0.0) as usize;
+        format!("{value:.decimals$}")
+    })
 }
 
 /// Two to five marks on the axis of values, at multiples of 1, 2 or 5 times a power of ten.
@@ -148,7 +152,8 @@ fn experiment(viewer: &mut Viewer, ui: &mut Ui) {
         sweep(ui, &format!("{name}: bones interpolated a frame"), &series(&|row| Some(row.interpolated)));
         sweep(ui, &format!("{name}: largest error in pixels"), &series(&|row| Some(row.error.max_pixels)));
     }
-    ui.small(format!("{} · distances in units of 1/{} of the model", report.adapter, report.size));
+    let adapter = if report.adapter.is_empty() { String::new() } else { format!("{} · ", report.adapter) };
+    ui.small(format!("{adapter}distances in units of 1/{} of the model", report.size));
     if ui.button("Save report").clicked()
         && let Ok(bytes) = serde_json::to_vec_pretty(report)
     {
@@ -161,6 +166,7 @@ fn sweep(ui: &mut Ui, title: &str, series: &[Series]) {
     ui.label(egui::RichText::new(title).small());
     let plot = Plot::new(title)
         .height(1.4 * HEIGHT)
+        .x_axis_label("distance")
         .include_y(0.0)
         .allow_drag(false)
         .allow_zoom(false)

@@ -11,6 +11,9 @@ use crate::viewer::{Request, Viewer};
 const THROTTLES: [(Option<f64>, &str); 3] =
     [(None, "no limit"), (Some(2e6), "2 Mbit/s"), (Some(15.91e6), "15.91 Mbit/s")];
 
+/// Number of transfers that are listed.
+const TRANSFERS: usize = 12;
+
 pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     section(ui, "Scene", true, |ui| {
         summary(viewer, ui);
@@ -65,6 +68,10 @@ fn open(viewer: &mut Viewer, ui: &mut Ui) {
         if (ui.button("Open").clicked() || entered) && !viewer.address.trim().is_empty() {
             wanted = Some(viewer.address.trim().to_owned());
         }
+        if entered {
+            // Keys are letters of the address until somebody clicks elsewhere.
+            response.request_focus();
+        }
     });
     egui::ComboBox::from_id_salt("examples")
         .selected_text("Examples and recent files")
@@ -73,6 +80,12 @@ fn open(viewer: &mut Viewer, ui: &mut Ui) {
             for (at, (_, _, title)) in EXAMPLES.iter().enumerate() {
                 if ui.selectable_label(false, *title).clicked() {
                     viewer.open_example(at);
+                }
+            }
+            #[cfg(target_arch = "wasm32")]
+            for name in crate::web::offered(ui.ctx()) {
+                if ui.selectable_label(false, format!("{name}, from this server")).clicked() {
+                    wanted = Some(name);
                 }
             }
             let is_example = |name: &String| EXAMPLES.iter().any(|(example, ..)| example == name);
@@ -125,7 +138,11 @@ fn network(viewer: &mut Viewer, ui: &mut Ui) {
         site(shown, ui);
     }
     egui::Grid::new("arrivals").num_columns(3).striped(true).show(ui, |ui| {
-        for arrival in viewer.arrivals.iter().rev().take(12) {
+        for title in ["the last transfers", "bytes", "time"] {
+            ui.label(egui::RichText::new(title).small());
+        }
+        ui.end_row();
+        for arrival in viewer.arrivals.iter().rev().take(TRANSFERS) {
             ui.add(egui::Label::new(short(&arrival.name)));
             ui.label(grouped(arrival.bytes as u64));
             ui.label(format!("{:.0} ms", 1e3 * arrival.seconds));

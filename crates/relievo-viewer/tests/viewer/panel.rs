@@ -288,6 +288,17 @@ fn gates_have_their_parts() {
         }
     }
     assert!(!others.is_empty(), "another character was chosen");
+    // It stays chosen when another gate builds the scene anew.
+    let place = |driver: &Driver| {
+        let shown = driver.shown();
+        let (world, chosen) = (&shown.stage.world, shown.chosen.as_ref().expect("chosen").instance);
+        let all = world.objects.iter().filter_map(|object| world.scene.instances(object.object).ok());
+        all.flatten().position(|instance| instance == chosen)
+    };
+    let before = place(&driver);
+    driver.choose("gate", "bounded");
+    driver.settle();
+    assert_eq!(place(&driver), before);
     assert_eq!(driver.viewer.settings().drag, Drag::Orbit);
 }
 

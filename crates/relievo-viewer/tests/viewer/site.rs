@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use relievo_delivery::client::get;
 use relievo_delivery::server::{Limits, ServeOptions};
-use relievo_viewer::{Memory, Settings};
+use relievo_viewer::{Memory, Request, Settings};
 
 use crate::driver::{Driver, creature, different, gpu, settings};
 use crate::host::{Host, options};
@@ -251,14 +251,34 @@ fn a_scene_of_a_site_is_built_anew_and_compared_without_fetching_again() {
     driver.settle();
     assert!(driver.viewer.scene_text().is_some_and(|text| text.contains("bounded")));
     assert!(levels(&driver)[0] >= before[0], "{:?} {before:?}", levels(&driver));
-    until(&mut driver, "scene", is_whole);
-    let total = driver.viewer.bytes();
+    // What is lacking is fetched, and nothing twice.
     driver.key(egui::Key::C);
-    driver.settle();
-    assert!(driver.viewer.compares(), "{:?}", driver.viewer.notice());
-    assert_eq!(driver.viewer.bytes(), total, "the packages are there");
+    until(&mut driver, "comparison", |driver| driver.viewer.compares());
+    let total = driver.viewer.bytes();
+    assert!(is_whole(&driver), "{:?}", levels(&driver));
     let size = ["rock.rlv", "creature.rlv"]
         .map(|name| std::fs::metadata(folder().path().join(name)).expect("there").len());
     let all: u64 = size.iter().sum();
     assert!((total as u64) < all + 40_000, "{total} bytes for packages of {all}");
+    // A saved scene finds its packages from anywhere.
+    driver.click("Save scene");
+    let saved = driver.requests.iter().find_map(|request| match request {
+        Request::Save { name, bytes } => Some((name.clone(), bytes.clone())),
+        _ => None,
+    });
+    let (name, bytes) = saved.expect("saved");
+    let mut other = viewer(None);
+    other.viewer.open(&name, Arc::new(Memory::default().with(&name, bytes)));
+    other.settle();
+    assert_eq!(other.viewer.notice(), None);
+    assert_eq!(other.shown().stage.world.objects.len(), driver.shown().stage.world.objects.len());
+    // The numbers are those of the scene that was opened last.
+    let (_, seconds) = driver.viewer.first_picture().expect("drawn");
+    driver.viewer.open_address(&scene(&host));
+    driver.settle();
+    until(&mut driver, "scene again", is_whole);
+    let again = driver.viewer.bytes();
+    assert!(again > 0 && (again as u64) < all + 40_000, "{again} bytes for packages of {all}");
+    let (_, later) = driver.viewer.first_picture().expect("drawn");
+    assert!(later != seconds, "{later} s");
 }
