@@ -419,7 +419,7 @@ fn holes_are_left_out_and_closed_again() {
     let closed = picture(&mut world);
     assert!(closed == picture(&mut whole) && closed != open);
     assert!(ground(&world, middle).is_some());
-    world.scene.set_terrain_holes(world.land, &[hole.clone()]).expect("changed");
+    world.scene.set_terrain_holes(world.land, std::slice::from_ref(&hole)).expect("changed");
     world.settle();
     assert!(picture(&mut world) == open);
     // Sample by sample, the same hole is the same picture.
