@@ -12,6 +12,9 @@ use crate::viewer::{Request, Viewer};
 /// Height of a plot in points.
 const HEIGHT: f32 = 110.0;
 
+/// The range of distances with room for a legend, in parts of the range that was measured.
+const LEGEND: f64 = 1.5;
+
 pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     section(ui, "Plots", false, |ui| frames(viewer, ui));
     section(ui, "Experiment", false, |ui| experiment(viewer, ui));
@@ -164,9 +167,14 @@ fn experiment(viewer: &mut Viewer, ui: &mut Ui) {
 /// A plot against distance.
 fn sweep(ui: &mut Ui, title: &str, series: &[Series]) {
     ui.label(egui::RichText::new(title).small());
+    let far = series.iter().flat_map(|(_, points)| points).map(|[distance, _]| *distance).fold(0.0, f64::max);
     let plot = Plot::new(title)
         .height(1.4 * HEIGHT)
-        .x_axis_label("distance")
+        .custom_x_axes(vec![
+            AxisHints::new_x().label("distance").label_spacing(egui::Rangef::new(20.0, 40.0)),
+        ])
+        // The legend lies beside the lines.
+        .include_x(LEGEND * far)
         .include_y(0.0)
         .allow_drag(false)
         .allow_zoom(false)

@@ -107,7 +107,7 @@ fn every_section_light_and_dark_wide_and_narrow() {
 #[test]
 #[ignore = "takes minutes: `make looks`"]
 fn the_whole_experiment_as_the_button_draws_it() {
-    let mut driver = Driver::with(gpu(), [1000, 1640], 1.0, Settings { theme: Theme::Light, ..settings() });
+    let mut driver = Driver::with(gpu(), [1000, 2100], 1.0, Settings { theme: Theme::Light, ..settings() });
     driver.viewer.open(
         "stone.json",
         Arc::new(
