@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use relievo::asset::package::PackageHeader;
@@ -332,11 +333,39 @@ fn files_come_a_few_at_once_and_those_named_by_a_hash_are_checked() {
     }
 }
 
-/// Mutated answers: a model, or an error by name; no panic, no endless work. `RELIEVO_MUTATIONS` sets their number.
+/// Mutated answers: a model, or an error by name; no panic, no endless work. `RELIEVO_MUTATIONS` sets their number. Every
+/// processor gets [`PART`] of them at a time.
 #[test]
 fn mutated_answers_give_a_model_or_an_error() {
     let count = std::env::var("RELIEVO_MUTATIONS").ok().and_then(|text| text.parse().ok()).unwrap_or(500);
-    let mut random = Random(5);
+    let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get() as u64);
+    let (part, failed) = (AtomicU64::new(0), AtomicU64::new(0));
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let first = PART * part.fetch_add(1, Ordering::Relaxed);
+                    if first >= count {
+                        break;
+                    }
+                    failed.fetch_add(mutated(first, PART.min(count - first)), Ordering::Relaxed);
+                    if first > 0 && first % (100 * PART) == 0 {
+                        println!("{first} of {count} answers");
+                    }
+                }
+            });
+        }
+    });
+    let failed = failed.into_inner();
+    assert!(failed > count / 10, "{failed} of {count}");
+}
+
+/// Number of mutated answers that follow from one seed.
+const PART: u64 = 100;
+
+/// Fetches a model with mutated answers so many times. The number of times that it was not fetched.
+fn mutated(seed: u64, count: u64) -> u64 {
+    let mut random = Random(5 + seed);
     let mut failed = 0;
     for _ in 0..count {
         let mut memory = Memory::new(1 + random.below(40_000) as usize);
@@ -375,8 +404,8 @@ fn mutated_answers_give_a_model_or_an_error() {
             let levels = fetcher.header(model).expect("a header").levels.len();
             assert!(levels > 0 && !found.meshes.is_empty());
         }
-        failed += usize::from(!matches!(fetcher.state(model), FetchState::Idle));
+        failed += u64::from(!matches!(fetcher.state(model), FetchState::Idle));
         assert!(creature().starts_with(&fetcher.bytes(model)), "nothing damaged is kept");
     }
-    assert!(failed > count / 10, "{failed} of {count}");
+    failed
 }
