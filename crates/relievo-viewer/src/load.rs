@@ -314,7 +314,7 @@ impl Loader<'_> {
         Ok(())
     }
 
-    /// Reads a file, if it was not read before. `called` is what the panel calls it.
+    /// Reads a file, if it was not read before. The panel lists it as `called`.
     async fn fetch(&self, (name, called): (&Path, String), source: &Throttled<'_>) -> io::Result<()> {
         if self.files.borrow().contains_key(name) {
             return Ok(());

@@ -94,7 +94,7 @@ fn status_line(viewer: &mut Viewer, ui: &mut Ui) {
     });
 }
 
-/// What the bound of the error is.
+/// The hint of the status line: it explains the bound of the error.
 const BOUND: &str = "An upper bound for everything that is drawn. It is above the limit where memory or a budget coarsens levels, \
                      while detail is on its way, and very near to a model of a package, whose vertices are rounded.";
 

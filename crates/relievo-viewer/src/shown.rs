@@ -78,7 +78,7 @@ pub struct Shown {
     applied: Option<(Levels, Vec<usize>)>,
     /// Whether somebody moved the camera.
     pub(crate) is_moved: bool,
-    /// What was drawn when that was last known.
+    /// The newest sample whose statistics had arrived.
     last_sample: Sample,
 }
 
@@ -415,7 +415,7 @@ impl Shown {
             .stage_times()
             .map(|times| [times.select, times.gate, times.sample, times.local_to_model, times.skin]);
         let seen = self.stage.seen();
-        // What follows a new model or level is not known for some frames.
+        // The statistics of the first frames with a new model or level arrive later.
         let Some(seen) = seen else {
             return Sample { stages, bones: bones.unwrap_or(0.0), displacement, ..self.last_sample.clone() };
         };

@@ -134,10 +134,11 @@ pub type Locate = fn(&str) -> Result<(String, Arc<dyn Source>), InputError>;
 #[cfg(not(target_arch = "wasm32"))]
 pub fn locate(address: &str) -> Result<(String, Arc<dyn Source>), InputError> {
     let refused = |bound: &str| InputError::new("address", address, bound);
-    match address.split_once("://") {
-        Some(("http" | "https", _)) => return Ok(site(address.to_owned())),
-        Some(_) => return Err(refused("must be the path of a file, or begin with http:// or https://")),
-        None => {}
+    if is_address(address) {
+        return Ok(site(address.to_owned()));
+    }
+    if address.contains("://") {
+        return Err(refused("must be the path of a file, or begin with http:// or https://"));
     }
     let path = Path::new(address);
     let name = path.file_name().ok_or_else(|| refused("must end in the name of a file"))?;

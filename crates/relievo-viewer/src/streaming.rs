@@ -28,7 +28,7 @@ const LOOK: f64 = 0.004;
 /// A request that runs.
 #[derive(Debug, Clone)]
 pub struct Asked {
-    /// What the package is called, or the end of the address.
+    /// The name of the package; for other files, the end of the address.
     pub name: String,
     /// The bytes that were asked for; `None` for the whole file.
     pub range: Option<Range<u64>>,
@@ -48,7 +48,7 @@ pub(crate) struct Wire {
     /// Parts of answers that may not come yet.
     held: VecDeque<(RequestId, Answer)>,
     asked: BTreeMap<RequestId, Asked>,
-    /// What packages are called, by the names of their files.
+    /// Names of packages, by the names of their files.
     names: BTreeMap<String, String>,
     arrivals: Vec<Arrival>,
     /// Why the last answer failed, if it did.
@@ -144,7 +144,7 @@ impl Transport for Wire {
 pub struct PackageState {
     /// The path in the scene file.
     pub path: PathBuf,
-    /// What it is called: the name of its object, or else that of the file.
+    /// The name of its object; without one, the path.
     pub name: String,
     /// Levels that are there, and levels of the package; 0 before its header is there.
     pub levels: [usize; 2],

@@ -138,7 +138,7 @@ fn costs(shown: &mut Shown, ui: &mut Ui) {
     });
 }
 
-/// What a level's number is.
+/// The hint of the table: it explains the numbers of levels.
 const LEVELS: &str = "Level 0 is the finest that is there; a finer one that arrives becomes level 0. At most 8 of a package's levels are used.";
 
 /// A choice of one of several values.

@@ -251,7 +251,7 @@ fn a_scene_of_a_site_is_built_anew_and_compared_without_fetching_again() {
     driver.settle();
     assert!(driver.viewer.scene_text().is_some_and(|text| text.contains("bounded")));
     assert!(levels(&driver)[0] >= before[0], "{:?} {before:?}", levels(&driver));
-    // What is lacking is fetched, and nothing twice.
+    // The comparison fetches the missing levels, and nothing twice.
     driver.key(egui::Key::C);
     until(&mut driver, "comparison", |driver| driver.viewer.compares());
     let total = driver.viewer.bytes();
