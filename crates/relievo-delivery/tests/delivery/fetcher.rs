@@ -349,7 +349,7 @@ fn mutated_answers_give_a_model_or_an_error() {
                         break;
                     }
                     failed.fetch_add(mutated(first, PART.min(count - first)), Ordering::Relaxed);
-                    if first > 0 && first % (100 * PART) == 0 {
+                    if first > 0 && first.is_multiple_of(100 * PART) {
                         println!("{first} of {count} answers");
                     }
                 }
