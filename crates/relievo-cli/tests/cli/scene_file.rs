@@ -148,6 +148,25 @@ fn frames_are_drawn_and_counted() {
     assert!(folder.frame(0).into_rgba8() == first);
 }
 
+/// Endless terrain tells how many nodes a frame made and draws: all of the first frame, none of the second, which stands still.
+#[test]
+fn nodes_of_endless_terrain_are_counted() {
+    let folder = Folder::new();
+    let scene = json!({
+        "terrain": { "config": { "patchSize": 17, "coarseLevels": 5, "scaleFactor": 9, "seed": "nodes" }, "endless": true, "view": 200 },
+        "camera": { "at": [0, 60, 0], "look": [50, 0, 50] }
+    });
+    let run = folder.run(&scene.to_string(), &["--frames", "2", "--size", "96x64"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let report = folder.report();
+    assert_documented(&report);
+    let nodes = |frame: usize, of: &str| {
+        report["frames"][frame]["objects"][0]["nodes"][of].as_u64().expect("a number")
+    };
+    assert!(nodes(0, "drawn") > 4 && nodes(0, "made") >= nodes(0, "drawn"), "{report}");
+    assert_eq!((nodes(1, "drawn"), nodes(1, "made")), (nodes(0, "drawn"), 0));
+}
+
 /// Two views of one submission draw what one view draws, and so does reversed depth.
 #[test]
 fn split_and_reversed_pictures_are_the_same() {

@@ -41,6 +41,18 @@ pub struct ObjectFrame {
     /// Number of clusters of vertices that were skinned; missing unless it is a character.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clusters: Option<u32>,
+    /// Numbers of nodes; missing unless it is endless terrain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nodes: Option<NodeCounts>,
+}
+
+/// Nodes of endless terrain in a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct NodeCounts {
+    /// Number of nodes that the frame made. A frame waits for all that it needs.
+    pub made: usize,
+    /// Number of nodes that the views draw, without culling.
+    pub drawn: usize,
 }
 
 /// What was drawn with one level of detail.
@@ -201,6 +213,7 @@ fn counted(mut player: Player) -> Result<Player, Error> {
 
 /// What the last frame drew of each object. The device has executed it.
 fn drawn(player: &mut Player) -> Result<Vec<ObjectFrame>, Error> {
+    let made = player.nodes_made().to_vec();
     let (world, views) = player.parts_mut();
     let frame = world.scene.frames().wrapping_sub(1);
     let seen: Vec<_> = views.iter_mut().filter_map(|view| view.statistics().cloned()).collect();
@@ -230,7 +243,8 @@ fn drawn(player: &mut Player) -> Result<Vec<ObjectFrame>, Error> {
         let all = seen.iter().flat_map(|view| &view.objects).filter(|own| own.object == object);
         all.map(|own| own.pixels).fold(0.0, f32::max)
     };
-    let of = |object: &WorldObject| {
+    let of = |(object, made): (&WorldObject, usize)| {
+        let terrain = world.scene.terrain_statistics(object.object).ok();
         let own = characters.iter().flatten().find(|own| own.object == object.object);
         Ok(ObjectFrame {
             lod_bias: world.scene.lod_bias(object.object)?,
@@ -238,9 +252,10 @@ fn drawn(player: &mut Player) -> Result<Vec<ObjectFrame>, Error> {
             levels: levels(object.object),
             bones: own.map(|own| own.bones),
             clusters: own.map(|own| own.clusters),
+            nodes: terrain.map(|all| NodeCounts { made, drawn: all.drawn }),
         })
     };
-    world.objects.iter().map(of).collect()
+    world.objects.iter().zip(made).map(of).collect()
 }
 
 fn triangles(objects: &[ObjectFrame]) -> u64 {

@@ -70,7 +70,9 @@ pub use errors::{Errors, Jump};
 #[cfg(not(target_arch = "wasm32"))]
 pub use flip::mean_flip;
 #[cfg(not(target_arch = "wasm32"))]
-pub use frames::{Compared, DrawnLevel, FrameReport, FrameSummary, ObjectFrame, ObjectReport, ScenePlay};
+pub use frames::{
+    Compared, DrawnLevel, FrameReport, FrameSummary, NodeCounts, ObjectFrame, ObjectReport, ScenePlay,
+};
 #[cfg(not(target_arch = "wasm32"))]
 pub use levels::LevelReport;
 #[cfg(not(target_arch = "wasm32"))]

@@ -96,6 +96,8 @@ pub struct Player {
     views: Vec<View>,
     /// The shadow of the light with its range, if it casts one.
     shadow: Option<(SunShadow, f32)>,
+    /// For each object of the world, the number of nodes of endless terrain that the last frame made.
+    nodes_made: Vec<usize>,
 }
 
 impl Player {
@@ -129,7 +131,8 @@ impl Player {
         renderer.prepare(&world.scene)?;
         let views = (0..1 + usize::from(is_split)).map(|_| world.scene.view(quality));
         let views = views.collect::<Result<_, _>>()?;
-        Ok(Self { gpu, world, rendering, target, renderer, views, shadow })
+        let nodes_made = vec![0; world.objects.len()];
+        Ok(Self { gpu, world, rendering, target, renderer, views, shadow, nodes_made })
     }
 
     /// The world.
@@ -150,6 +153,11 @@ impl Player {
     /// The views of the frame, from left to right.
     pub fn views(&self) -> &[View] {
         &self.views
+    }
+
+    /// For each object of the world, the number of nodes that the last frame made of it; 0 unless it is endless terrain.
+    pub fn nodes_made(&self) -> &[usize] {
+        &self.nodes_made
     }
 
     /// How frames are drawn.
@@ -174,6 +182,7 @@ impl Player {
         for (view, [from, to]) in self.views.iter_mut().zip(&halves) {
             view.set(if halves.len() == 1 { camera } else { columns(&camera, *from, *to) })?;
         }
+        self.nodes_made.fill(0);
         let start = Instant::now();
         let mut encoder = self.gpu.encoder("scene");
         let mut views: Vec<&mut View> = self.views.iter_mut().collect();
@@ -183,6 +192,7 @@ impl Player {
         }
         self.world.scene.record(&mut encoder, &mut views)?;
         self.finish(encoder)?;
+        self.count_nodes();
         // A picture shows endless terrain in full detail, which takes some frames where the camera has not been yet.
         for _ in 0..MOST_FRAMES_OF_DETAIL {
             // Velocities are those since the frame before, so no frame may come between.
@@ -194,6 +204,7 @@ impl Player {
             views.extend(self.shadow.iter_mut().map(|(shadow, _)| shadow.view()));
             self.world.scene.record(&mut encoder, &mut views)?;
             self.finish(encoder)?;
+            self.count_nodes();
         }
         let compute = milliseconds(start);
         let start = Instant::now();
@@ -204,6 +215,13 @@ impl Player {
         self.target.record(&mut encoder, self.world.background, |pass| self.draw(pass, &halves))?;
         self.finish(encoder)?;
         Ok(FrameTimes { compute, draw: milliseconds(start) })
+    }
+
+    /// Adds the nodes that were made last.
+    fn count_nodes(&mut self) {
+        for (object, count) in self.world.objects.iter().zip(&mut self.nodes_made) {
+            *count += self.world.scene.terrain_statistics(object.object).map_or(0, |all| all.made);
+        }
     }
 
     /// Whether all detail of endless terrain is there that the views of the last frame need.
