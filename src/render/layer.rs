@@ -61,8 +61,8 @@ pub enum Layer {
     /// Positions are relative to the corner of the view's cell ([`Camera::cell`](crate::scene::Camera::cell)). On reliefs, the
     /// position is the point that the ray meets.
     Measure,
-    /// Surfaces coloured by the level of detail of their instance, with depth: red for the finest, then orange, yellow, green,
-    /// teal, blue, indigo, violet. For debugging.
+    /// Surfaces coloured by the level of detail of their instance, or of their node of endless terrain, with depth: red for the
+    /// finest, then orange, yellow, green, teal, blue, indigo, and violet for the eighth and all coarser ones. For debugging.
     Levels,
     /// The colours that the caller's output writes ([`OutputProgram`](super::OutputProgram)), with depth.
     Own,

@@ -39,7 +39,7 @@ struct Surface {
     cutoff: f32,
     // Depth, 0 to 1. On a relief, this is the depth of the ray's hit.
     depth: f32,
-    // Level of detail of the instance, from 0 for the finest.
+    // Level of detail of the instance or of the node of endless terrain, 0 to 7, from 0 for the finest.
     level: u32,
     // Alpha of an instance that is blended while it fades, else 1. `alpha` already contains this factor.
     fade: f32,

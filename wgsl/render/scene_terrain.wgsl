@@ -283,6 +283,7 @@ fn terrain_surface(in: SceneFragment) -> Surface {
     surface.alpha = select(1.0, 0.0, in.uv.z > 1e-4);
     surface.cutoff = 0.5;
     surface.object = ground.object;
+    surface.level = min(in.words.y, 7u);
     surface.instance = terrain.first_patch + in.instance;
     return surface;
 }

@@ -82,7 +82,8 @@ pub struct Scene {
     /// report.json.
     /// surface: normals (-1 to 1 in world axes); frame_0000_albedo.png has colours before light, and frame_0000_id.png the
     /// numbers of object (red) and instance (green), with 16 bits.
-    /// levels: the level of detail of each instance: red for the finest, then orange, yellow, green, teal, blue, violet.
+    /// levels: the level of detail of each instance, and of each node of endless terrain: red for the finest, then orange, yellow,
+    /// green, teal, blue, violet.
     #[arg(verbatim_doc_comment, long, default_value = "color", value_parser = one_of(LAYERS))]
     layer: Layer,
     /// Samples a pixel: 1 or 4. Default: 4, and 1 for other layers than color, which have one alone.

@@ -14,6 +14,7 @@
 pub mod catalog;
 #[cfg(feature = "client")]
 pub mod client;
+pub mod file_names;
 pub mod mesh_json;
 #[cfg(feature = "server")]
 pub mod server;

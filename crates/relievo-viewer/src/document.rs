@@ -7,6 +7,7 @@ use relievo::InputError;
 use relievo::asset::{Light, Model};
 use relievo::scene::Quality;
 use relievo::scene_file::SceneFile;
+use relievo_delivery::file_names::{each_file_name, models_mut};
 use serde_json::{Map, Value, json};
 
 /// Extensions of files with a model.
@@ -172,7 +173,7 @@ impl Document {
     /// Sets the transition of all objects.
     pub fn set_transition(&mut self, name: &str) {
         self.part("quality", |quality| set(quality, "transition", Some(json!(name))));
-        self.each_object(|object| _ = object.remove("transition"));
+        models_mut(&mut self.root).for_each(|object| _ = object.remove("transition"));
     }
 
     /// Sets the light, and the background.
@@ -190,13 +191,9 @@ impl Document {
 
     /// Sets how the levels of detail of an object are chosen, by its number among meshes and then characters.
     pub fn set_level_of_detail(&mut self, object: usize, lod: Value) {
-        let mut at = 0;
-        self.each_object(|entry| {
-            if at == object {
-                entry.insert("lod".to_owned(), lod.clone());
-            }
-            at += 1;
-        });
+        if let Some(entry) = models_mut(&mut self.root).nth(object) {
+            entry.insert("lod".to_owned(), lod);
+        }
     }
 
     /// Sets a field of all characters; `None` removes it.
@@ -214,29 +211,19 @@ impl Document {
 
     /// The same scene with other names of files. `rename` gets each name, and returns another one or `None`.
     pub(crate) fn renamed(&self, rename: impl Fn(&str) -> Option<String>) -> Self {
-        let mut own = self.clone();
-        own.each_object(|entry| {
-            if let Some(Value::String(name)) = entry.get_mut("file")
-                && let Some(other) = rename(name)
-            {
+        let mut root = Value::Object(self.root.clone());
+        each_file_name(&mut root, &mut |_, name| {
+            if let Some(other) = rename(name) {
                 *name = other;
             }
         });
-        own
+        Self::of(root)
     }
 
     /// The names of the files of meshes and then characters; `None` for one without a single file.
     pub(crate) fn names(&self) -> Vec<Option<String>> {
         let lists = ["meshes", "characters"].into_iter().filter_map(|list| self.root.get(list)?.as_array());
         lists.flatten().map(|entry| Some(entry.get("file")?.as_str()?.to_owned())).collect()
-    }
-
-    fn each_object(&mut self, mut change: impl FnMut(&mut Map<String, Value>)) {
-        for list in ["meshes", "characters"] {
-            if let Some(Value::Array(all)) = self.root.get_mut(list) {
-                all.iter_mut().filter_map(Value::as_object_mut).for_each(&mut change);
-            }
-        }
     }
 
     /// Changes the object in a field, which is made if there is none.
@@ -303,6 +290,19 @@ mod tests {
         }
         document.set_characters("gate", None);
         assert_eq!(document.of_characters("gate"), None);
+    }
+
+    #[test]
+    fn all_files_of_a_scene_get_other_names() {
+        let text = r#"{"terrain": {"config": {"patchSize": 33, "scaleFactor": 6, "seed": "m", "zones": [{"min": -9, "max": 9, "texture": "moss.png"}]}},
+            "meshes": [{"file": "wall.obj", "material": {"relief": "bricks.png"}, "instances": [{"at": [0, 0, 0]}]}],
+            "camera": {"at": [0, 9, 0], "look": [9, 0, 9]}}"#;
+        let document = Document::from_json(text).expect("a scene");
+        let renamed =
+            document.renamed(|name| (name != "wall.obj").then(|| format!("http://there/{name}"))).text();
+        for name in ["\"http://there/moss.png\"", "\"http://there/bricks.png\"", "\"wall.obj\""] {
+            assert!(renamed.contains(name), "{name} in {renamed}");
+        }
     }
 
     #[test]

@@ -1,10 +1,15 @@
 //! The test of thesis A, section 13, at the press of a button: a camera moves away from a group of models, and each gate of bones
 //! is timed at each distance.
 
+use std::pin::pin;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::task::Poll;
 
 use relievo::gpu::Gpu;
 use relievo_lab::measure::{DistanceSweepOptions, DistanceSweepReport, Subject, distance_sweep};
+use web_time::Instant;
 
 /// What an experiment tells.
 enum News {
@@ -17,6 +22,9 @@ enum News {
 #[derive(Default)]
 pub struct Experiment {
     news: Option<Receiver<News>>,
+    /// Tells the one that runs to end.
+    ends: Arc<AtomicBool>,
+    began: Option<Instant>,
     /// Steps done, of all.
     pub steps: [u64; 2],
     /// The last result, or why there is none.
@@ -29,6 +37,19 @@ impl Experiment {
         self.news.is_some()
     }
 
+    /// Seconds that the rest takes, if its steps take as long as those that are done; `None` before the first one.
+    pub fn seconds_left(&self) -> Option<f64> {
+        let [done, of] = self.steps;
+        let passed = self.began.filter(|_| done > 0)?.elapsed().as_secs_f64();
+        Some(passed * of.saturating_sub(done) as f64 / done as f64)
+    }
+
+    /// Ends the one that runs, without a result.
+    pub fn cancel(&mut self) {
+        self.ends.store(true, Ordering::Relaxed);
+        self.news = None;
+    }
+
     /// Starts one with 100 models of 153 bones.
     pub fn start(
         &mut self,
@@ -37,7 +58,9 @@ impl Experiment {
         wake: impl Fn() + Send + Sync + 'static,
     ) {
         let (to, news) = channel();
+        let ends = Arc::new(AtomicBool::new(false));
         (self.news, self.steps, self.result) = (Some(news), [0, 1], None);
+        (self.ends, self.began) = (ends.clone(), Some(Instant::now()));
         let gpu = gpu.clone();
         let work = async move |gpu: Gpu| {
             let told = to.clone();
@@ -49,14 +72,22 @@ impl Experiment {
                     wake();
                 }
             };
-            let start = web_time::Instant::now();
+            let start = Instant::now();
             let clock = || start.elapsed().as_secs_f64();
             let measured = async {
                 let model = relievo_samples::creature()?;
                 let subject = Subject { name: "creature", model: &model, clip: 0 };
                 distance_sweep(&gpu, subject, &options, &clock, &listener).await
             };
-            let result: Result<_, relievo::Error> = measured.await;
+            // It waits for the device several times a step.
+            let mut measured = pin!(measured);
+            let result: Option<Result<_, relievo::Error>> =
+                std::future::poll_fn(|context| match ends.load(Ordering::Relaxed) {
+                    true => Poll::Ready(None),
+                    false => measured.as_mut().poll(context).map(Some),
+                })
+                .await;
+            let Some(result) = result else { return };
             let _ = to.send(News::Done(Box::new(result.map_err(|error| error.to_string()))));
             wake();
         };

@@ -23,8 +23,6 @@ pub const EXAMPLES: [(&str, &str, &str); 4] = [
     ("crowd.json", include_str!("examples/crowd.json"), "A crowd of 100"),
 ];
 
-pub use plots::quick;
-
 /// Width of the panel in points.
 const WIDTH: f32 = 320.0;
 

@@ -17,7 +17,7 @@ use crate::eye::Eye;
 use crate::history::{History, Sample};
 use crate::load::{Arrival, Changed, Job, News, Ready, Task};
 use crate::settings::Settings;
-use crate::shown::Shown;
+use crate::shown::{Clock, Shown};
 use crate::source::{Locate, Memory, Source, locate};
 use crate::stage::{Colors, Stage};
 use crate::start::Start;
@@ -730,6 +730,26 @@ impl Viewer {
         Some(self.shown.as_mut()?.document().text())
     }
 
+    /// What all controls say, as JSON: the scene file as the scene is now, and what is not in a scene file.
+    pub fn controls(&mut self) -> serde_json::Value {
+        let Some(shown) = &mut self.shown else { return serde_json::Value::Null };
+        let document = shown.document().text();
+        let Clock { plays, speed, follows } = shown.clock;
+        serde_json::json!({
+            "scene": serde_json::from_str::<serde_json::Value>(&document).unwrap_or_default(),
+            "settings": self.settings,
+            "time": shown.time(),
+            "plays": plays,
+            "speed": speed,
+            "follows": follows,
+            "exposure": shown.exposure,
+            "compares": self.compares,
+            "wiper": self.wiper,
+            "bookmarks": self.bookmarks.iter().flatten().count(),
+            "keys": self.shows_keys,
+        })
+    }
+
     /// Asks the host to save the scene file as the scene is now.
     pub(crate) fn save_scene(&mut self) {
         let Some(shown) = &mut self.shown else { return };
@@ -755,9 +775,9 @@ impl Viewer {
         Some(start.command(self.picture?.size))
     }
 
-    /// Starts the experiment of thesis A at some distances, as the button of the panel does.
-    pub fn run_experiment(&mut self) {
-        self.start_experiment(panel::quick());
+    /// Whether the experiment of thesis A runs.
+    pub fn is_measuring(&self) -> bool {
+        self.experiment.is_running()
     }
 
     /// Number of measurements of the last experiment, or why there are none; `None` while it runs, and before the first.

@@ -1,6 +1,6 @@
 //! The viewer in a page: a canvas, the browser's device, files by `fetch`, settings in the browser's storage.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::io;
 use std::sync::Arc;
 use std::time::Duration;
@@ -36,6 +36,10 @@ thread_local! {
     /// What the viewer shows, as JSON.
     static STATE: RefCell<String> = RefCell::new("{}".to_owned());
 
+    /// How often somebody asked what the controls say, and the last answer: its number, and what [`Viewer::controls`] says.
+    static ASKED: Cell<u32> = const { Cell::new(0) };
+    static ANSWER: RefCell<(u32, serde_json::Value)> = const { RefCell::new((0, serde_json::Value::Null)) };
+
     /// The way to the event loop for callbacks, which have to be `Send`: without threads, they find it here.
     static WAKE: RefCell<Option<EventLoopProxy<Told>>> = const { RefCell::new(None) };
 }
@@ -44,6 +48,15 @@ thread_local! {
 /// arrived, seconds until the first picture, and whether it rests.
 pub fn state() -> String {
     STATE.with_borrow(String::clone)
+}
+
+/// Asks what the controls say. The number is that of the answer, which is in [`state`] after the next frame: the fields `answer` and
+/// `controls`.
+pub fn ask() -> u32 {
+    let number = ASKED.get() + 1;
+    ASKED.set(number);
+    WAKE.with_borrow(|proxy| proxy.iter().for_each(|proxy| _ = proxy.send_event(Told::Wake)));
+    number
 }
 
 /// Opens the viewer in the page's canvas.
@@ -56,11 +69,6 @@ pub fn start() {
     let proxy = events.create_proxy();
     take_drops(&proxy);
     events.spawn_app(Page { proxy, running: None });
-}
-
-/// Starts the experiment, as the button of the panel does.
-pub fn experiment() {
-    WAKE.with_borrow(|proxy| proxy.iter().for_each(|proxy| _ = proxy.send_event(Told::Experiment)));
 }
 
 /// Shows in the page, and in the browser's console, why there is no picture.
@@ -172,7 +180,6 @@ enum Told {
     Failed(String),
     Dropped(Vec<(String, Arc<[u8]>)>),
     Recovered(Box<Opened>),
-    Experiment,
     /// The viewer is back from showing what has arrived.
     Back,
 }
@@ -351,7 +358,11 @@ impl Shown {
         }
     }
 
-    fn tell_state(&self) {
+    fn tell_state(&mut self) {
+        if ANSWER.with_borrow(|answer| answer.0) != ASKED.get() {
+            ANSWER.set((ASKED.get(), self.viewer.controls()));
+        }
+        let (answer, controls) = ANSWER.with_borrow(Clone::clone);
         let viewer = &self.viewer;
         let last = viewer.history().last();
         let state = json!({
@@ -371,11 +382,14 @@ impl Shown {
                 Ok(rows) => json!(rows),
                 Err(why) => json!(why),
             }),
+            "measures": viewer.is_measuring(),
             "rests": viewer.is_resting(),
             "picture": viewer.picture_size(),
             "frames": viewer.shown().map(|shown| shown.stage.world.scene.frames()),
             "panel": viewer.settings().panel,
             "pixels": viewer.shown().map(|shown| shown.quality.pixels),
+            "answer": answer,
+            "controls": controls,
         });
         STATE.set(state.to_string());
     }
@@ -534,11 +548,6 @@ impl ApplicationHandler<Told> for Page {
             Told::Dropped(files) => {
                 if let Some(shown) = &mut running.viewer {
                     shown.viewer.drop_files(files);
-                }
-            }
-            Told::Experiment => {
-                if let Some(shown) = &mut running.viewer {
-                    shown.viewer.run_experiment();
                 }
             }
             Told::Recovered(opened) => return self.recover(*opened),

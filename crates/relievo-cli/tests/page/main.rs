@@ -1,6 +1,7 @@
 //! The viewer's page in headless Chromium: its picture beside the native one on the same software adapter, what its console says,
-//! keys, mistakes, and two pages at once.
+//! keys, every control, mistakes, and two pages at once.
 
+mod controls;
 mod verify;
 
 use std::path::{Path, PathBuf};
@@ -71,7 +72,16 @@ impl Server {
     fn start(folder: &Path, port: u16) -> Self {
         let child = Command::new(env!("CARGO_BIN_EXE_relievo"))
             .current_dir(folder)
-            .args(["serve", "--models", "served", "--scene", "served/walk.json", "--listen"])
+            .args([
+                "serve",
+                "--models",
+                "served",
+                "--scene",
+                "served/walk.json",
+                "--scene",
+                "served/crowd.json",
+                "--listen",
+            ])
             .arg(format!("127.0.0.1:{port}"))
             .stdout(Stdio::null())
             .spawn();
@@ -104,8 +114,8 @@ fn packages() -> &'static [Vec<u8>; 2] {
     })
 }
 
-/// The cases at a pixel ratio of 1.
-fn plan(port: u16) -> Vec<Value> {
+/// The cases at a pixel ratio of 1. The folder has the files of the scenes.
+fn plan(folder: &Path, port: u16) -> Vec<Value> {
     let case =
         |name: &str, query: &str, size: [u32; 2]| json!({ "name": name, "query": query, "size": size });
     let site = format!("scene=http://127.0.0.1:{port}/scenes/walk.json&time=0");
@@ -117,7 +127,7 @@ fn plan(port: u16) -> Vec<Value> {
         case("gone", "scene=/there/is/no.glb", [320, 240]),
         case("streamed", &site, [320, 240]),
         case("dies", &site, [320, 240]),
-        case("experiment", "scene=/rock.rlv", [320, 240]),
+        case("experiment", "scene=/rock.rlv", controls::SMALL),
         case("rock.glb", "scene=/rock.glb", [320, 240]),
         case("corner.obj", "scene=/corner.obj", [320, 240]),
         case("land.json", "scene=/land.json", [320, 240]),
@@ -135,7 +145,7 @@ fn plan(port: u16) -> Vec<Value> {
     plan[5]["streams"] = json!(true);
     plan[6]["streams"] = json!(true);
     plan[6]["dies"] = json!(true);
-    plan[7]["experiment"] = json!(true);
+    plan[7]["experiment"] = controls::experiment(folder).into();
     plan[8]["resizes"] = json!([250, 330]);
     plan[9]["drops"] = json!(["dropped.json", "corner.obj"]);
     plan[11]["fails"] = json!(true);
@@ -143,28 +153,53 @@ fn plan(port: u16) -> Vec<Value> {
     plan
 }
 
+/// A folder with what the servers serve, and a free port.
+fn served() -> (tempfile::TempDir, u16) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [rock, creature] = packages();
+    let (walk, crowd) = (STREAMED.as_bytes(), controls::CROWD.as_bytes());
+    std::fs::create_dir(folder.path().join("served")).expect("made");
+    for (name, bytes) in [
+        ("rock.rlv", rock.as_slice()),
+        ("creature.rlv", creature),
+        ("walk.json", walk),
+        ("crowd.json", crowd),
+    ] {
+        std::fs::write(folder.path().join("served").join(name), bytes).expect("written");
+    }
+    std::fs::write(folder.path().join("rock.rlv"), rock).expect("written");
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    (folder, listener.local_addr().expect("known").port())
+}
+
 /// The cases at a pixel ratio of 1.
 fn page() -> &'static Page {
     static PAGE: OnceLock<Page> = OnceLock::new();
     PAGE.get_or_init(|| {
         let _alone = ALONE.lock();
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let [rock, creature] = packages();
-        std::fs::create_dir(folder.path().join("served")).expect("made");
-        for (name, bytes) in
-            [("rock.rlv", rock.as_slice()), ("creature.rlv", creature), ("walk.json", STREAMED.as_bytes())]
-        {
-            std::fs::write(folder.path().join("served").join(name), bytes).expect("written");
-        }
-        let port =
-            std::net::TcpListener::bind("127.0.0.1:0").expect("a port").local_addr().expect("known").port();
+        let (folder, port) = served();
         let mut server = Some(Server::start(folder.path(), port));
-        let said = visit(folder.path(), &[], &plan(port), &mut |note| match note {
+        let said = visit(folder.path(), &[], &plan(folder.path(), port), &mut |note| match note {
             "server stop" => server = None,
             "server start" => server = Some(Server::start(folder.path(), port)),
             note => println!("{note}"),
         });
         Page { said, folder }
+    })
+}
+
+/// The case whose controls are moved. It has the browser for itself: each step waits for frames.
+fn moved() -> &'static Page {
+    static PAGE: OnceLock<Page> = OnceLock::new();
+    PAGE.get_or_init(|| {
+        let _alone = ALONE.lock();
+        let (folder, port) = served();
+        let _server = Server::start(folder.path(), port);
+        let scene = format!("http://127.0.0.1:{port}/scenes/crowd.json");
+        let query = format!("scene={scene}&time=0");
+        let steps = controls::recorded(&scene);
+        let plan = [json!({ "name": "controls", "query": query, "size": controls::SIZE, "moves": steps })];
+        Page { said: visit(folder.path(), &[], &plan, &mut |note| println!("{note}")), folder }
     })
 }
 
@@ -198,7 +233,9 @@ fn visit(folder: &Path, flags: &[&str], plan: &[Value], heard: &mut dyn FnMut(&s
         const own = GPUAdapter.prototype.requestDevice; GPUAdapter.prototype.requestDevice = async function (...all) { \
         const device = await own.apply(this, all); window.devices.push(device); return device; }; \
         const submit = GPUQueue.prototype.submit; GPUQueue.prototype.submit = function (...all) { \
-        submit.apply(this, all); if (window.submitted) window.submitted(); };</script>\n";
+        submit.apply(this, all); if (window.submitted) window.submitted(); }; \
+        window.saved = []; HTMLAnchorElement.prototype.click = function () { window.saved.push(this.download); }; \
+        navigator.clipboard.writeText = async (text) => { window.saved.push(text); };</script>\n";
     let index = include_str!("../../../relievo-viewer/web/index.html");
     let index = index.replacen("<script type=\"module\">", &format!("{hook}<script type=\"module\">"), 1);
     let [rock, creature] = packages();
@@ -244,7 +281,11 @@ fn built(folder: &Path) -> PathBuf {
 }
 
 fn case(name: &str) -> &'static Value {
-    let said = if name == "double" { &double().said } else { &page().said };
+    let said = match name {
+        "double" => &double().said,
+        "controls" => &moved().said,
+        _ => &page().said,
+    };
     assert!(said["failed"].is_null(), "{}", said["failed"].as_str().unwrap_or_default());
     let all = said.as_array().expect("cases");
     all.iter().find(|case| case["name"] == name).unwrap_or_else(|| panic!("no case {name}"))
@@ -421,6 +462,31 @@ fn keys_alone_move_a_slider_of_the_page() {
     let slid = &case("panel")["slid"];
     println!("after {} keys: {slid}", slid["keys"]);
     assert!(slid["after"].as_f64() > slid["before"].as_f64(), "{slid}");
+}
+
+/// Each step changes what the controls of the page say as it changes those of a viewer without a window.
+#[test]
+fn every_control_of_the_page_does_what_it_does_natively() {
+    let case = case("controls");
+    let moved = case["moved"].as_array().expect("steps");
+    let mut wrong = Vec::new();
+    for (step, own) in moved.iter().zip(case["steps"].as_array().expect("steps")) {
+        assert_eq!(step["name"], own["name"]);
+        let name = step["name"].as_str().expect("a name");
+        if own["opens"].is_null() {
+            let found = controls::differences(name, &step["controls"], &own["controls"]);
+            wrong.extend(found.into_iter().map(|what| format!("{name}: {what}")));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    println!("{} steps", moved.len());
+    let saved = moved[moved.len() - 1]["saved"].as_array().expect("a list");
+    let saved: Vec<_> = saved.iter().filter_map(Value::as_str).collect();
+    let command = saved.iter().find(|text| text.starts_with("http")).expect("an address was copied");
+    assert!(command.contains("/viewer/index.html?scene=") && command.contains("at="), "{command}");
+    for name in ["crowd.png", "crowd-view.json"] {
+        assert!(saved.contains(&name), "{name} in {saved:?}");
+    }
 }
 
 #[test]

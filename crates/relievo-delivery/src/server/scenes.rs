@@ -11,12 +11,8 @@ use serde_json::Value;
 use super::ServeError;
 use super::resource::{Compression, Lifetime, Resource};
 use super::site::{Files, is_model, read_file};
+use crate::file_names::{BUILT_IN, each_file_name, models_mut};
 use crate::sha256;
-
-/// Fields of a scene file that hold names of files, or lists of such names.
-const FIELDS: [&str; 8] = ["file", "levels", "relief", "albedo", "normal", "texture", "features", "image"];
-
-const BUILT_IN: &str = "builtin:";
 
 /// A scene file, and the models that it names.
 pub(super) struct SceneSource {
@@ -42,7 +38,7 @@ impl SceneSource {
         let mut models = Vec::new();
         let mut renamed = BTreeMap::new();
         let mut refused = None;
-        each_name(&mut text, &mut |field, name| {
+        each_file_name(&mut text, &mut |field, name| {
             let is_model = field == "file" && (is_model(name) || built_ins.has_model(built_in(name)));
             if is_model {
                 models.push(name.clone());
@@ -50,7 +46,7 @@ impl SceneSource {
                 let bound = "must be a .glb file: files beside others are not served";
                 let error = InputError::new("levels", name.as_str(), bound);
                 refused = refused.take().or(Some(ServeError::File { path: path.to_owned(), source: error }));
-            } else if !name.starts_with(BUILT_IN) && !is_built_in_texture(field, name) {
+            } else if !name.starts_with(BUILT_IN) {
                 match added(path, name, files) {
                     Ok(object) => drop(renamed.insert(name.clone(), object)),
                     Err(error) => refused = refused.take().or(Some(error)),
@@ -91,11 +87,6 @@ pub(super) fn built_in(name: &str) -> &str {
     name.strip_prefix(BUILT_IN).unwrap_or_default()
 }
 
-/// Whether a zone's texture is one of the built-in ones, whose names have no dot.
-fn is_built_in_texture(field: &str, name: &str) -> bool {
-    field == "texture" && !name.contains('.')
-}
-
 /// Adds a file by the hash of its content. Returns its path relative to the scene file.
 fn added(scene: &Path, name: &str, files: &mut Files) -> Result<String, ServeError> {
     let path = scene.parent().unwrap_or(Path::new("")).join(name);
@@ -107,45 +98,19 @@ fn added(scene: &Path, name: &str, files: &mut Files) -> Result<String, ServeErr
     Ok(format!("../{object}"))
 }
 
-/// Calls `change` with each name of a file, and the field that holds it.
-fn each_name(value: &mut Value, change: &mut dyn FnMut(&str, &mut String)) {
-    match value {
-        Value::Object(fields) => {
-            for (field, value) in fields {
-                match value {
-                    Value::String(name) if FIELDS.contains(&field.as_str()) => change(field, name),
-                    Value::Array(names) if FIELDS.contains(&field.as_str()) => {
-                        for name in names {
-                            if let Value::String(name) = name {
-                                change(field, name);
-                            }
-                        }
-                    }
-                    other => each_name(other, change),
-                }
-            }
-        }
-        Value::Array(values) => values.iter_mut().for_each(|value| each_name(value, change)),
-        _ => {}
-    }
-}
-
 /// Names the objects of packages after their files, since the address of a package tells nobody what it is.
 fn name_objects(text: &mut Value, packages: &BTreeMap<String, String>) {
-    for list in ["meshes", "characters"] {
-        let entries = text.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten();
-        for entry in entries.filter_map(Value::as_object_mut) {
-            let file = entry.get("file").and_then(Value::as_str).filter(|file| packages.contains_key(*file));
-            if let (Some(file), false) = (file, entry.contains_key("name")) {
-                let name = file.rsplit('/').next().unwrap_or(file).to_owned();
-                entry.insert("name".to_owned(), Value::String(name));
-            }
+    for entry in text.as_object_mut().into_iter().flat_map(models_mut) {
+        let file = entry.get("file").and_then(Value::as_str).filter(|file| packages.contains_key(*file));
+        if let (Some(file), false) = (file, entry.contains_key("name")) {
+            let name = file.rsplit('/').next().unwrap_or(file).to_owned();
+            entry.insert("name".to_owned(), Value::String(name));
         }
     }
 }
 
 fn rename(text: &mut Value, names: &BTreeMap<String, String>) {
-    each_name(text, &mut |_, name| {
+    each_file_name(text, &mut |_, name| {
         if let Some(new) = names.get(name.as_str()) {
             name.clone_from(new);
         }

@@ -1,9 +1,10 @@
 //! The sections of controls: detail, bones, what is shown, light, and time.
 
-use egui::{Slider, Ui};
+use egui::{Slider, SliderClamping, Ui};
 use relievo::ops::animation::priority::TERMS;
 use relievo::scene::Transition;
 use relievo::scene_file::WorldKind;
+use relievo::shared::render::output_levels::LEVEL_COLORS;
 
 use super::{grouped, list, section};
 use crate::controls::{Drag, GateBy, LevelsBy};
@@ -30,13 +31,13 @@ fn detail(viewer: &mut Viewer, ui: &mut Ui) {
     let Viewer { shown: Some(shown), compares, settings, wires, .. } = viewer else { return };
     let quality = &mut shown.quality;
     let pixels = Slider::new(&mut quality.pixels, 0.0..=64.0).logarithmic(true).smallest_positive(0.05);
-    ui.add(pixels.text("pixels off").custom_formatter(|value, _| format!("{value:.2}")))
+    ui.add(decimals(pixels, 2).text("pixels off"))
         .on_hover_text("By how many pixels anything may be off; 0 is full detail");
     limit(ui, "triangles", &mut quality.has_triangles, |ui| {
         ui.add(Slider::new(&mut quality.triangles, 100..=5_000_000).logarithmic(true))
     });
     limit(ui, "milliseconds", &mut quality.has_milliseconds, |ui| {
-        ui.add(Slider::new(&mut quality.milliseconds, 1.0..=200.0).logarithmic(true).max_decimals(1))
+        ui.add(decimals(Slider::new(&mut quality.milliseconds, 1.0..=200.0).logarithmic(true), 1))
     });
     ui.checkbox(compares, "full detail beside it")
         .on_hover_text("Full detail to the left of a line that can be dragged (C)");
@@ -44,8 +45,11 @@ fn detail(viewer: &mut Viewer, ui: &mut Ui) {
         ui.label("colours");
         ui.selectable_value(&mut settings.colors, Colors::Shaded, "shaded");
         ui.selectable_value(&mut settings.colors, Colors::Levels, "levels")
-            .on_hover_text("Red is the finest level, then orange, yellow, green, teal, blue, violet (L)");
+            .on_hover_text("The level of detail of each instance, and of each part of endless terrain (L)");
     });
+    if settings.colors == Colors::Levels {
+        legend(ui);
+    }
     ui.checkbox(&mut settings.bounds, "bounding boxes");
     ui.checkbox(&mut settings.wires, "edges of triangles")
         .on_hover_text("The edges of what is drawn, as far as they face the camera (M)");
@@ -56,6 +60,23 @@ fn detail(viewer: &mut Viewer, ui: &mut Ui) {
     }
     levels(shown, ui);
     costs(shown, ui);
+}
+
+/// The colours of levels with their numbers.
+fn legend(ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.label("finest");
+        for (level, [red, green, blue]) in LEVEL_COLORS.into_iter().enumerate() {
+            let fill = egui::Color32::from(egui::Rgba::from_rgb(red, green, blue));
+            let text = egui::RichText::new(level.to_string()).color(egui::Color32::WHITE);
+            egui::Frame::NONE
+                .fill(fill)
+                .inner_margin(egui::Margin::symmetric(5, 1))
+                .show(ui, |ui| ui.label(text));
+        }
+        ui.label("coarsest");
+    });
 }
 
 /// A limit that can be off.
@@ -83,7 +104,7 @@ fn levels(shown: &mut Shown, ui: &mut Ui) {
         }
         LevelsBy::Size => {
             let [first, last] = &mut levels.sizes;
-            let part = |value| Slider::new(value, 1e-5..=1.0).logarithmic(true).max_decimals(5);
+            let part = |value| decimals(Slider::new(value, 1e-5..=1.0).logarithmic(true), 5);
             ui.add(part(first).text("below"));
             ui.add(part(last).text("coarsest below"));
             *last = last.min(0.99 * *first);
@@ -106,9 +127,9 @@ fn levels(shown: &mut Shown, ui: &mut Ui) {
             ui.selectable_value(&mut levels.transition, Some(at), *name);
         }
     });
-    ui.add(Slider::new(&mut levels.bias, 0.1..=10.0).logarithmic(true).max_decimals(2).text("bias"))
+    ui.add(decimals(Slider::new(&mut levels.bias, 0.1..=10.0).logarithmic(true), 2).text("bias"))
         .on_hover_text("Factor of the metric by which levels are chosen; above 1, everything is coarser");
-    ui.add(Slider::new(&mut levels.hysteresis, 0.0..=0.5).max_decimals(2).text("hysteresis"));
+    ui.add(decimals(Slider::new(&mut levels.hysteresis, 0.0..=0.5), 2).text("hysteresis"));
 }
 
 /// What the view draws of each object, level by level.
@@ -153,14 +174,19 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, all: &[(T, &str)], valu
 
 /// A slider over a wide range.
 fn wide(value: &mut f32) -> Slider<'_> {
-    Slider::new(value, 0.01..=1e5).logarithmic(true).max_decimals(2)
+    decimals(Slider::new(value, 0.01..=1e5).logarithmic(true), 2)
+}
+
+/// A slider that shows so many decimals. A value that it shows stays as it is, while egui's own `max_decimals` rounds it.
+fn decimals(slider: Slider<'_>, count: usize) -> Slider<'_> {
+    slider.clamping(SliderClamping::Edits).custom_formatter(move |value, _| format!("{value:.count$}"))
 }
 
 fn bones(viewer: &mut Viewer, ui: &mut Ui) {
     let Viewer { shown: Some(shown), settings, .. } = viewer else { return };
     let bones = &mut shown.bones;
     choice(ui, "gate", &GateBy::ALL, &mut bones.gate);
-    let distance = |value| Slider::new(value, 0.1..=1e5).logarithmic(true).max_decimals(1);
+    let distance = |value| decimals(Slider::new(value, 0.1..=1e5).logarithmic(true), 1);
     match bones.gate {
         GateBy::Uniform | GateBy::SkipPeriod => {
             let [near, far] = &mut bones.range;
@@ -174,16 +200,12 @@ fn bones(viewer: &mut Viewer, ui: &mut Ui) {
         GateBy::Scene | GateBy::Bounded | GateBy::Off => {}
     }
     if bones.gate == GateBy::SkipPeriod {
-        ui.add(
-            Slider::new(&mut bones.period, 0.02..=10.0)
-                .logarithmic(true)
-                .max_decimals(2)
-                .text("period in seconds"),
-        );
+        let period = Slider::new(&mut bones.period, 0.02..=10.0).logarithmic(true);
+        ui.add(decimals(period, 2).text("period in seconds"));
         ui.checkbox(&mut bones.analyzed, "weights from each clip");
         ui.add_enabled_ui(!bones.analyzed, |ui| {
             for (weight, term) in bones.weights.iter_mut().zip(TERMS) {
-                ui.add(Slider::new(weight, 0.0..=1.0).max_decimals(2).text(term));
+                ui.add(decimals(Slider::new(weight, 0.0..=1.0), 2).text(term));
             }
         });
     }
@@ -215,7 +237,7 @@ fn time(viewer: &mut Viewer, ui: &mut Ui) {
         }
         ui.label(format!("{:.2} s", shown.time()));
     });
-    ui.add(Slider::new(&mut shown.clock.speed, 0.05..=4.0).logarithmic(true).max_decimals(2).text("speed"));
+    ui.add(decimals(Slider::new(&mut shown.clock.speed, 0.05..=4.0).logarithmic(true), 2).text("speed"));
     let end = shown.path_end();
     if end > 0.0 {
         ui.checkbox(&mut shown.clock.follows, "follow the scene's camera");
@@ -261,13 +283,13 @@ fn light(viewer: &mut Viewer, ui: &mut Ui) {
     let (mut around, mut above) =
         (direction.x.atan2(direction.z).to_degrees(), direction.y.asin().to_degrees());
     let turned =
-        ui.add(Slider::new(&mut around, -180.0..=180.0).suffix("°").max_decimals(0).text("sun, direction"));
-    let raised = ui.add(Slider::new(&mut above, 1.0..=89.0).suffix("°").max_decimals(0).text("sun, height"));
+        ui.add(decimals(Slider::new(&mut around, -180.0..=180.0).suffix("°"), 0).text("sun, direction"));
+    let raised = ui.add(decimals(Slider::new(&mut above, 1.0..=89.0).suffix("°"), 0).text("sun, height"));
     if turned.changed() || raised.changed() {
         let (yaw, pitch) = (around.to_radians(), above.to_radians());
         shown.light.direction =
             glam::Vec3::new(yaw.sin() * pitch.cos(), pitch.sin(), yaw.cos() * pitch.cos());
     }
-    ui.add(Slider::new(&mut shown.light.ambient, 0.0..=1.0).max_decimals(2).text("ambient"));
-    ui.add(Slider::new(&mut shown.exposure, -4.0..=4.0).max_decimals(1).suffix(" EV").text("exposure"));
+    ui.add(decimals(Slider::new(&mut shown.light.ambient, 0.0..=1.0), 2).text("ambient"));
+    ui.add(decimals(Slider::new(&mut shown.exposure, -4.0..=4.0), 1).suffix(" EV").text("exposure"));
 }

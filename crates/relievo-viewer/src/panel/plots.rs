@@ -115,7 +115,11 @@ fn experiment(viewer: &mut Viewer, ui: &mut Ui) {
     if experiment.is_running() {
         let [done, of] = experiment.steps;
         let part = done as f32 / of.max(1) as f32;
-        ui.add(egui::ProgressBar::new(part).text(format!("{done} of {of}")));
+        let left = experiment.seconds_left().map(|left| format!(", about {left:.0} s left"));
+        ui.add(egui::ProgressBar::new(part).text(format!("{done} of {of}{}", left.unwrap_or_default())));
+        if ui.button("Cancel").clicked() {
+            experiment.cancel();
+        }
     } else {
         ui.horizontal(|ui| {
             for (label, options) in [("Run", quick()), ("Run all distances", DistanceSweepOptions::default())]
@@ -191,7 +195,7 @@ fn sweep(ui: &mut Ui, title: &str, series: &[Series]) {
 }
 
 /// The options of an experiment that takes little time: some distances with few frames.
-pub fn quick() -> DistanceSweepOptions {
+fn quick() -> DistanceSweepOptions {
     DistanceSweepOptions {
         distances: vec![0.0, 400.0, 900.0, 1400.0, 1800.0, 2400.0],
         frames: 8,

@@ -169,6 +169,29 @@ fn colours_boxes_and_bones_are_painted() {
     assert!(off <= 1.0, "{off} px, though a pixel is allowed");
 }
 
+/// Endless terrain has the colours of its levels: red near the camera, others farther away.
+#[test]
+fn endless_terrain_has_the_colours_of_its_levels() {
+    let mut driver = Driver::new([640, 480]);
+    let scene = r#"{
+      "terrain": { "config": { "patchSize": 17, "scaleFactor": 60, "seed": "levels", "coarseLevels": 6 }, "endless": true, "view": 500 },
+      "camera": { "at": [0, 80, 0], "look": [90, 20, 60], "far": 900 }
+    }"#;
+    driver.viewer.open("land.json", Arc::new(Memory::default().with("land.json", scene.as_bytes())));
+    driver.settle();
+    driver.key(Key::L);
+    driver.frames(60);
+    assert_eq!(driver.shown().stage.ready(), 1.0);
+    driver.save("levels-endless");
+    let picture = driver.picture();
+    let part = |is: &dyn Fn([u8; 4]) -> bool| {
+        picture.pixels().filter(|pixel| is(pixel.0)).count() as f64 / picture.pixels().len() as f64
+    };
+    let red = part(&|[red, green, blue, _]| red > 2 * green.max(blue));
+    let green = part(&|[red, green, blue, _]| green > red.max(blue).saturating_add(10));
+    assert!(red > 0.02 && green > 0.02, "{red} {green}");
+}
+
 #[test]
 fn gates_of_bones_change_the_work() {
     let mut driver = crowd();

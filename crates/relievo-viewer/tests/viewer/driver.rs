@@ -38,6 +38,8 @@ pub struct Driver {
     scale: f32,
     time: f64,
     events: Vec<Event>,
+    /// The events of each frame, if they are recorded.
+    pub log: Option<Vec<Vec<Event>>>,
     nodes: HashMap<String, (Role, Rect)>,
     /// The name of the widget that has the focus.
     pub focused: Option<String>,
@@ -69,6 +71,7 @@ impl Driver {
             scale,
             time: 1.0,
             events: Vec::new(),
+            log: None,
             nodes: HashMap::new(),
             focused: None,
             target: target(&gpu, pixels),
@@ -91,6 +94,9 @@ impl Driver {
 
     pub fn frame_after(&mut self, seconds: f64) -> Result<(), relievo::Error> {
         self.time += seconds;
+        if let Some(log) = &mut self.log {
+            log.push(self.events.clone());
+        }
         let mut input = egui::RawInput {
             screen_rect: Some(Rect::from_min_size(
                 Pos2::ZERO,
@@ -116,6 +122,13 @@ impl Driver {
         self.viewer.gpu().wait()?;
         self.requests.extend(self.viewer.requests());
         painted
+    }
+
+    /// The events of what a user does, frame by frame.
+    pub fn recorded(&mut self, act: impl FnOnce(&mut Self)) -> Vec<Vec<Event>> {
+        self.log = Some(Vec::new());
+        act(self);
+        self.log.take().unwrap_or_default()
     }
 
     /// Draws so many frames.

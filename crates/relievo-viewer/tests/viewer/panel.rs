@@ -302,6 +302,48 @@ fn gates_have_their_parts() {
     assert_eq!(driver.viewer.settings().drag, Drag::Orbit);
 }
 
+/// A section that opens shows values, and changes none: here ones with many digits, and beyond the ends of sliders.
+#[test]
+fn sections_that_open_change_nothing() {
+    let mut driver = Driver::new([640, 2400]);
+    let scene = r#"{
+      "characters": [{ "file": "creature.rlv", "instances": [{ "at": [0, 0, 0] }],
+        "gate": { "mode": "skip-period", "range": [1.23456, 31.23456], "period": 0.123456 } }],
+      "light": { "direction": [0.41805, -0.1, 0.7193], "ambient": 0.33333 },
+      "camera": { "at": [0, 1, 4], "look": [0, 0, 0] },
+      "quality": { "pixels": 77.77777, "milliseconds": 333.33333 }
+    }"#;
+    let files = Memory::default().with("odd.json", scene.as_bytes()).with("creature.rlv", creature());
+    driver.viewer.open("odd.json", Arc::new(files));
+    driver.settle();
+    assert_eq!(driver.viewer.notice(), None);
+    let before = driver.viewer.scene_text();
+    for section in ["Bones", "Light", "Plots", "Experiment", "Network"] {
+        driver.click(section);
+        driver.frames(3);
+        assert_eq!(driver.viewer.scene_text(), before, "{section}");
+    }
+}
+
+#[test]
+fn the_experiment_can_be_cancelled() {
+    let mut driver = rocks([640, 2000]);
+    for section in ["Scene", "Detail", "Time and camera", "Experiment"] {
+        driver.click(section);
+    }
+    driver.click("Run");
+    assert!(driver.viewer.is_measuring() && driver.find("Run").is_none());
+    driver.click("Cancel");
+    assert!(!driver.viewer.is_measuring() && driver.find("Run").is_some());
+    assert_eq!(driver.viewer.experiment_rows(), None);
+    // Another one starts, with its own progress.
+    driver.click("Run all distances");
+    assert!(driver.viewer.is_measuring());
+    driver.click("Cancel");
+    driver.frames(3);
+    assert_eq!((driver.viewer.is_measuring(), driver.viewer.experiment_rows()), (false, None));
+}
+
 #[test]
 #[ignore = "measures for a minute, and alone: cargo test --test viewer -- --ignored press_of_a_button"]
 fn the_experiment_of_thesis_a_runs_at_the_press_of_a_button() {

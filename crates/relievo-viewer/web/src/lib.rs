@@ -16,8 +16,8 @@ pub fn state() -> String {
     relievo_viewer::web::state()
 }
 
-/// Starts the experiment, as the button of the panel does.
+/// Asks what all controls say. The answer is in the state once its field `answer` is the number that this returns.
 #[wasm_bindgen]
-pub fn experiment() {
-    relievo_viewer::web::experiment();
+pub fn ask() -> u32 {
+    relievo_viewer::web::ask()
 }
