@@ -50,8 +50,6 @@
 #[cfg(test)]
 extern crate self as relievo;
 
-pub mod asset;
-pub mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod ops;
@@ -74,9 +72,10 @@ pub mod scene_file;
 pub mod shared;
 pub mod srgb;
 
-pub use error::{Error, InputError};
 #[allow(unused_imports, reason = "not all of them are used without a GPU")]
 pub(crate) use ops::{animation, hash, lod, mesh, skinning, surface, terrain};
+#[doc(inline)]
+pub use relievo_asset::{Error, InputError, asset, error};
 #[cfg(feature = "gpu")]
 pub use wgpu;
 pub use {glam, image};
