@@ -21,6 +21,8 @@
 //!
 //! Further crates of the repository:
 //!
+//! - `relievo-asset` has [`asset`], [`error`], [`ops::mesh`] and [`ops::hash`](mod@ops::hash), which need no GPU. This crate
+//!   re-exports them; depend on this crate.
 //! - `relievo-samples` has a creature with clips, and height maps with their colours.
 //! - `relievo-lab` checks every kernel against its reference. It compares the kernel's time with the time of copying the same
 //!   number of bytes. It also reports the cost and the visible error of levels of detail on the caller's own data.

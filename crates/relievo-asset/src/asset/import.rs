@@ -8,6 +8,7 @@ use crate::asset::gltf::Beside;
 use crate::{Error, InputError};
 
 /// Extensions of the file formats that can be imported, in lower case.
+#[doc(hidden)]
 pub const ENDINGS: [&str; 4] = ["glb", "gltf", "obj", "rlv"];
 
 /// A model, and what its file has beyond it.
@@ -97,7 +98,7 @@ impl Model {
     /// Reads a file like [`Model::from_file`], with all levels of detail that an artist made: one model a level, the finest
     /// first. Levels are nodes with the extension `MSFT_lod` ([`gltf`](super::gltf#levels-of-detail)). A file without the
     /// extension has one level, and so has a package, whose model has levels of detail of its own.
-    /// [`join_levels`](crate::ops::skinning::join_levels) makes one model of the levels.
+    /// `relievo::ops::skinning::join_levels` makes one model of the levels.
     ///
     /// # Errors
     /// The errors of [`Model::from_file`], and [`Error::InputFile`] for nodes that cannot be levels

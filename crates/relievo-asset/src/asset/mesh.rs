@@ -28,7 +28,7 @@ pub struct MeshLevel {
     /// Three vertex indices per triangle, into the mesh's vertices. A mesh without partners may have no triangle at a level.
     pub indices: Vec<u32>,
     /// Geometric error in the model's units, at least 0: the largest distance between the level's surface and the mesh's
-    /// surface in any examined pose. [`MeshLevels`](crate::skinning::levels::MeshLevels) measures this distance at sample
+    /// surface in any examined pose. `relievo::ops::skinning::MeshLevels` measures this distance at sample
     /// points. No vertex of the mesh is further than `error` from the level, and no sample point of the level is further than
     /// `error` from the mesh. Other points may be further.
     pub error: f32,

@@ -26,7 +26,6 @@ pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
 pub use image_file::Image;
-#[doc(hidden)]
 pub use import::ENDINGS;
 pub use import::ModelFile;
 pub use influences::{Influence, Influences};

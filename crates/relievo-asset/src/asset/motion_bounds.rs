@@ -14,7 +14,7 @@ pub struct MotionBounds {
     #[doc(hidden)]
     pub spheres: Vec<[f32; 4]>,
     /// Largest displacement of a vertex in any clip per unit of influence fade
-    /// ([`Extent::stray`](crate::skinning::extent::Extent::stray)).
+    /// (`relievo::ops::skinning::Extent::stray`).
     #[doc(hidden)]
     pub stray: f32,
     /// Fingerprint of the model.

@@ -1,5 +1,5 @@
 //! Computes tangent frames of meshes in f64. They are the import's fallback, and the reference for
-//! `kernels/surface/tangent.wgsl`. [`crate::surface::tangent`] defines tangent frames.
+//! `kernels/surface/tangent.wgsl`. `relievo::ops::surface::tangent` defines tangent frames.
 
 use glam::{DVec2, DVec3};
 
@@ -136,7 +136,7 @@ pub struct TangentFrame {
     pub sensitivity: f64,
 }
 
-/// Computes tangent and handedness of every vertex, as [`crate::surface::tangent`] defines them.
+/// Computes tangent and handedness of every vertex, as `relievo::ops::surface::tangent` defines them.
 ///
 /// # Errors
 /// The errors of [`TangentMesh::validate`].

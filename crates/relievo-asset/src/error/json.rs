@@ -8,7 +8,7 @@ use super::InputError;
 /// Largest number of characters of a value in an error message.
 const SHOWN: usize = 60;
 
-/// A JSON value as text for an error message, cut after [`SHOWN`] characters.
+/// A JSON value as text for an error message, cut after `SHOWN` characters.
 pub fn shown(value: &Value) -> String {
     let text = match value {
         Value::String(text) => text.clone(),

@@ -12,7 +12,6 @@ use std::path::{Path, PathBuf};
 
 #[cfg(feature = "gpu")]
 pub use gpu::GpuError;
-#[doc(hidden)]
 pub use names::name_or_index;
 
 /// A value outside its bounds. Programs may compare the fields, for example `error.path == "zones[2].max"`.

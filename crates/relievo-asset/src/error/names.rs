@@ -5,6 +5,7 @@ const LISTED: usize = 20;
 
 /// The `bound` of an [`InputError`](crate::InputError) for a value that must be one of `names` or an index into `names`. `what`
 /// is the plural of the named things, such as `bones`.
+#[doc(hidden)]
 pub fn name_or_index<'a>(what: &str, names: impl ExactSizeIterator<Item = &'a str>) -> String {
     let count = names.len();
     if count == 0 {

@@ -66,7 +66,6 @@ use std::convert::Infallible;
 use std::ops::ControlFlow;
 
 use crate::InputError;
-#[doc(hidden)]
 pub use points::NO_BODY;
 use points::Points;
 

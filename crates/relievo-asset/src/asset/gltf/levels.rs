@@ -9,6 +9,7 @@ use super::extensions::{LOD, extension};
 use crate::InputError;
 
 /// Largest number of levels of an object of a scene, as in `wgsl/lod/object.wgsl`.
+#[doc(hidden)]
 pub const OBJECT_LEVELS: usize = 8;
 
 /// Largest number of coarser levels of a node.

@@ -127,7 +127,6 @@ use super::model::Model;
 use crate::InputError;
 use document::Document;
 use levels::Lods;
-#[doc(hidden)]
 pub use levels::OBJECT_LEVELS;
 use materials::Materials;
 

@@ -11,7 +11,7 @@ use crate::asset::tangents::{TangentMesh as Surface, tangents};
 
 /// Largest number of triangles around a vertex for which MikkTSpace is used. MikkTSpace visits these triangles by recursion,
 /// and its time grows with the square of their number. A surface with more triangles around a vertex gets the tangents of
-/// [`crate::surface::tangent`].
+/// `relievo::ops::surface::tangent`.
 const MAX_AROUND: u32 = 1024;
 
 /// The tangents of a surface, and the vertices that were duplicated for them.
@@ -24,7 +24,7 @@ pub struct Tangents {
     pub copied: Vec<u32>,
 }
 
-/// Computes one tangent per vertex with the solver of [`crate::surface::tangent`]. No vertex is duplicated. This is the
+/// Computes one tangent per vertex with the solver of `relievo::ops::surface::tangent`. No vertex is duplicated. This is the
 /// fallback where MikkTSpace cannot be used.
 ///
 /// # Errors

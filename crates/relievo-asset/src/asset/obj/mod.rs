@@ -38,7 +38,6 @@ use std::path::Path;
 use super::gltf::Beside;
 use super::model::Model;
 use crate::InputError;
-#[doc(hidden)]
 pub use write::{ObjWriter, Object};
 
 impl Model {

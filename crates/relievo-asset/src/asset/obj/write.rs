@@ -11,6 +11,7 @@ use crate::asset::material::{Alpha, Material, Texture, Wrapping};
 use crate::asset::{Mesh, Model};
 
 /// Input for one object of the file: vertices, and triangles with vertex indices from 0.
+#[doc(hidden)]
 pub struct Object<'a, P, T> {
     /// Name of the object. Without a name, the triangles belong to the previous object. Whitespace becomes `_`, because a space
     /// would end the name and a line break would end the statement.
@@ -28,6 +29,7 @@ pub struct Object<'a, P, T> {
 }
 
 /// Writes objects into one file, one after the other. Numbers are written with all digits that their type needs.
+#[doc(hidden)]
 pub struct ObjWriter<W> {
     out: W,
     /// Number of the next vertex in the file, counted from 1.
@@ -109,7 +111,7 @@ impl Model {
     /// the library `{name}.mtl` and its images as PNG.
     ///
     /// Each mesh becomes an object with the mesh's name. Positions, normals and texture coordinates stay unchanged, in the
-    /// mesh's own space. If the model has a skeleton, convert it with [`at_rest`](crate::skinning::at_rest()) first.
+    /// mesh's own space. If the model has a skeleton, convert it with `relievo::ops::skinning::at_rest` first.
     ///
     /// Colours, opacity, textures and normal maps are written. OBJ cannot express skins, clips, morph targets, levels of
     /// detail, tangents, double-sided triangles, filters, and the threshold of [`Alpha::Mask`]; these are not written. Of joined

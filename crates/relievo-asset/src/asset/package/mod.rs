@@ -14,7 +14,7 @@
 //! The chunks lie one behind the other, in the order of the header. A level's chunk refines the level before. Vertices and
 //! triangles have the order in which they are decoded.
 //!
-//! A package is lossless. Attributes that lie on a grid take few bytes; [`cook`](crate::ops::skinning::cook) moves them there.
+//! A package is lossless. Attributes that lie on a grid take few bytes; `relievo::ops::skinning::cook` moves them there.
 //! Vertices that no triangle uses are left out.
 
 mod attributes;
@@ -37,10 +37,8 @@ use coder::{Reader, damaged};
 pub use header::{PackageChunk, PackageHeader, PackageLevel, VERSION, sha256};
 use mesh::{Contexts, LeveledMesh};
 use parts::Parts;
-#[doc(hidden)]
 pub use snap::{snapped, welded};
 use surface::Room;
-#[doc(hidden)]
 pub use write::{Packed, write};
 
 /// Whether bytes begin like a package.

@@ -24,6 +24,7 @@ const DIRECTIONS: Grid = Grid::Step(-10);
 ///
 /// # Errors
 /// [`InputError`] for weights that do not sum to 1.
+#[doc(hidden)]
 pub fn snapped(model: &Model) -> Result<Model, InputError> {
     let mut snapped = model.clone();
     for mesh in &mut snapped.meshes {
@@ -82,6 +83,7 @@ fn weights(influences: &[Influence]) -> Vec<Influence> {
 ///
 /// # Errors
 /// [`InputError`] for influences that no vertex can have.
+#[doc(hidden)]
 pub fn welded(model: &Model) -> Result<Model, InputError> {
     let mut welded = model.clone();
     for mesh in &mut welded.meshes {

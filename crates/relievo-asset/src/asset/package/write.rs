@@ -13,6 +13,7 @@ use crate::asset::images::png;
 use crate::asset::{Mesh, Model};
 
 /// A model to write as a package.
+#[doc(hidden)]
 pub struct Packed<'a> {
     /// The model, with its levels of detail.
     pub model: &'a Model,
@@ -28,6 +29,7 @@ pub struct Packed<'a> {
 ///
 /// # Errors
 /// [`InputError`] if the parts of the model do not match each other, and for images that cannot be written.
+#[doc(hidden)]
 pub fn write(packed: &Packed<'_>) -> Result<Vec<u8>, InputError> {
     let Packed { model, errors, quantization, .. } = *packed;
     model.check().map_err(|error| error.below("model"))?;

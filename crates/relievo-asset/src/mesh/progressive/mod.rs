@@ -17,7 +17,6 @@ mod patch;
 mod record;
 mod stored;
 
-#[doc(hidden)]
 pub use partners::{Became, partners};
 pub use patch::IndexPatch;
 pub use record::ChosenLevel;
@@ -84,7 +83,7 @@ impl ProgressiveMesh {
     }
 
     /// Builds a progressive mesh from the levels and partners of a mesh ([`Mesh::levels`], [`Mesh::partners`]), for
-    /// example from [`add_levels`](crate::skinning::levels::add_levels). Within a level, vertices that follow the same
+    /// example from `relievo::ops::skinning::add_levels`. Within a level, vertices that follow the same
     /// bones keep the mesh's order.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 /// A level, and the replacements of the previous level's vertices.
+#[doc(hidden)]
 pub struct Became<'a> {
     /// Triangles of the level, three indices each.
     pub indices: &'a [u32],
@@ -19,6 +20,7 @@ pub struct Became<'a> {
 /// target's position. This is valid because the vanished triangles only need to become degenerate. This depends only on
 /// positions. If no such vertex exists, one of the vertices that collapsed to this position becomes the partner of the
 /// others.
+#[doc(hidden)]
 pub fn partners(
     finest: &[u32],
     levels: &[Became<'_>],

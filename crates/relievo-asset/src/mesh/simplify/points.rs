@@ -26,6 +26,7 @@ pub(crate) struct Points {
 }
 
 /// Marks a vertex or point that belongs to no rigid body.
+#[doc(hidden)]
 pub const NO_BODY: u32 = u32::MAX;
 
 impl Points {
