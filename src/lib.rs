@@ -21,6 +21,8 @@
 //!
 //! Further crates of the repository:
 //!
+//! - `relievo-asset` has [`asset`], [`error`], [`ops::mesh`] and [`ops::hash`](mod@ops::hash), which need no GPU. This crate
+//!   re-exports them; depend on this crate.
 //! - `relievo-samples` has a creature with clips, and height maps with their colours.
 //! - `relievo-lab` checks every kernel against its reference. It compares the kernel's time with the time of copying the same
 //!   number of bytes. It also reports the cost and the visible error of levels of detail on the caller's own data.
@@ -50,8 +52,6 @@
 #[cfg(test)]
 extern crate self as relievo;
 
-pub mod asset;
-pub mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod ops;
@@ -74,9 +74,10 @@ pub mod scene_file;
 pub mod shared;
 pub mod srgb;
 
-pub use error::{Error, InputError};
 #[allow(unused_imports, reason = "not all of them are used without a GPU")]
 pub(crate) use ops::{animation, hash, lod, mesh, skinning, surface, terrain};
+#[doc(inline)]
+pub use relievo_asset::{Error, InputError, asset, error};
 #[cfg(feature = "gpu")]
 pub use wgpu;
 pub use {glam, image};

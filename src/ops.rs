@@ -55,15 +55,14 @@
 
 #[path = "animation/mod.rs"]
 pub mod animation;
-#[path = "hash.rs"]
-pub mod hash;
 #[path = "lod/mod.rs"]
 pub mod lod;
-#[path = "mesh/mod.rs"]
-pub mod mesh;
 #[path = "skinning/mod.rs"]
 pub mod skinning;
 #[path = "surface/mod.rs"]
 pub mod surface;
 #[path = "terrain/mod.rs"]
 pub mod terrain;
+
+#[doc(inline)]
+pub use relievo_asset::{hash, mesh};

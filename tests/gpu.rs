@@ -188,13 +188,6 @@ fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     assert!(batch.set(&gpu, &[[0, 0]; 34], &Features::default()).is_err(), "34 patches do not fit");
 }
 
-/// Operating systems abort submissions that take seconds, so long jobs are split.
-#[test]
-fn out_of_memory_is_an_error_with_what_to_do() {
-    let error = GpuError::from(wgpu::Error::OutOfMemory { source: "test".into() });
-    assert!(error.to_string().contains("smaller batch"), "{error}");
-}
-
 /// Buffers, bind groups and pipelines that somebody holds; live pieces of device memory, which recorded work holds too.
 fn census(instance: &wgpu::Instance, gpu: &Gpu) -> ([usize; 3], Option<usize>) {
     let hub = instance.generate_report().expect("not a browser").hub;

@@ -31,7 +31,9 @@ pub mod sample;
 #[cfg(feature = "gpu")]
 pub mod updated_bones;
 
+use crate::asset::Interpolation;
 pub use crate::asset::keyframe::RotationPath;
+use crate::shared::animation::interpolation;
 pub use bounds::MotionBounds;
 pub use clip_set::ClipSet;
 pub use gate::{Frame, Gate};
@@ -49,3 +51,8 @@ pub use priority::{Priorities, Weights};
 pub use root_motion::RootMotion;
 #[cfg(feature = "gpu")]
 pub use updated_bones::UpdatedBones;
+
+// `relievo-asset` repeats the constants of the shaders.
+const _: () = assert!(Interpolation::Step as u32 == interpolation::INTERPOLATION_STEP);
+const _: () = assert!(Interpolation::Linear as u32 == interpolation::INTERPOLATION_LINEAR);
+const _: () = assert!(Interpolation::CubicSpline as u32 == interpolation::INTERPOLATION_SPLINE);

@@ -9,6 +9,15 @@ use std::task::{Context, Poll, Waker};
 
 use super::{Gpu, GpuError};
 
+/// The error of relievo for an error of wgpu.
+fn from_wgpu(error: wgpu::Error) -> GpuError {
+    match error {
+        wgpu::Error::OutOfMemory { source } => GpuError::OutOfMemory { reason: source.to_string() },
+        wgpu::Error::Validation { description, .. } => GpuError::Validation { reason: description },
+        wgpu::Error::Internal { description, .. } => GpuError::Internal { reason: description },
+    }
+}
+
 /// Errors that the device reported outside of the calls that caused them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Errors(Arc<Mutex<Heard>>);
@@ -32,7 +41,7 @@ impl Errors {
     /// Registers a handler for errors outside of error scopes. The handler replaces earlier handlers.
     pub fn listen(&self, device: &wgpu::Device) {
         let errors = self.clone();
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| errors.hear(error.into())));
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| errors.hear(from_wgpu(error))));
         self.listen_for_loss(device);
     }
 
@@ -166,7 +175,7 @@ impl Gpu {
         }
         // Loss is checked first: a lost device ignores calls, and may report dependent objects as invalid.
         self.check_loss()?;
-        first.map_or(Ok(()), |error| Err(GpuError::from(error)))
+        first.map_or(Ok(()), |error| Err(from_wgpu(error)))
     }
 
     /// Pops nested error scopes. The browser reports their errors later.
@@ -182,7 +191,7 @@ impl Gpu {
                 let error = answer.await;
                 first = first.or(error);
             }
-            errors.answer(first.map(GpuError::from));
+            errors.answer(first.map(from_wgpu));
         });
         Ok(())
     }
@@ -195,6 +204,12 @@ mod tests {
 
     fn internal(reason: &str) -> GpuError {
         GpuError::Internal { reason: reason.to_owned() }
+    }
+
+    #[test]
+    fn out_of_memory_is_an_error_with_what_to_do() {
+        let error = from_wgpu(wgpu::Error::OutOfMemory { source: "test".into() });
+        assert!(error.to_string().contains("smaller batch"), "{error}");
     }
 
     /// Answers arrive after the calls, in the order of the scopes, as in a browser.

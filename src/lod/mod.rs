@@ -45,3 +45,6 @@ pub use crate::shared::lod::instance::{
 pub use crate::shared::lod::object::{BLOCK, LodObject, NO_OBJECT, OBJECT_LEVELS, OBJECT_LISTS, SceneDraw};
 pub use crate::shared::lod::view::{LodCamera, SelectView, VIEW_CAMERAS};
 pub use camera::{Depth, is_mirrored, planes};
+
+// `relievo-asset` repeats the constant of the shaders.
+const _: () = assert!(crate::asset::gltf::OBJECT_LEVELS == OBJECT_LEVELS as usize);

@@ -13,7 +13,7 @@ use super::parse_character::{self, CharacterDetail};
 use super::parse_lod::{level_of_detail, transition};
 use crate::InputError;
 use crate::animation::Wrap;
-use crate::asset::import::ENDINGS;
+use crate::asset::ENDINGS;
 use crate::scene::Transition;
 use crate::shared::lod::object::OBJECT_LEVELS;
 use crate::surface::ReliefShadow;

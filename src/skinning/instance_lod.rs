@@ -4,7 +4,11 @@
 use crate::InputError;
 use crate::asset::influences::MAX_INFLUENCES;
 use crate::asset::mesh::MAX_LEVELS;
+use crate::shared::skinning::instance_lod as shared;
 pub use crate::shared::skinning::instance_lod::InstanceLod;
+
+// `relievo-asset` repeats the constant of the shaders.
+const _: () = assert!(MAX_LEVELS == shared::MAX_LEVELS as usize);
 
 /// Two projected distances in world units. Between them, the influences of all but the strongest bone fade out.
 ///

@@ -8,8 +8,19 @@
 mod pass;
 pub mod reference;
 
+use std::mem::offset_of;
+
+use crate::asset::keyframe::KeyframeCursor;
+use crate::shared::animation::clip;
 #[cfg(feature = "gpu")]
 pub use pass::{KeyframeCursorJob, KeyframeCursorPass};
+
+// `relievo-asset` repeats the struct of the shaders.
+const _: fn(clip::KeyframeCursor) -> KeyframeCursor =
+    |clip::KeyframeCursor { key, fraction }| KeyframeCursor { key, fraction };
+const _: () = assert!(size_of::<KeyframeCursor>() == size_of::<clip::KeyframeCursor>());
+const _: () = assert!(offset_of!(KeyframeCursor, key) == offset_of!(clip::KeyframeCursor, key));
+const _: () = assert!(offset_of!(KeyframeCursor, fraction) == offset_of!(clip::KeyframeCursor, fraction));
 
 /// Largest allowed difference between a cursor's `key + fraction` and the CPU reference, on any device. It holds for times up to
 /// 64 s and keys at least 1/64 s apart.

@@ -5,9 +5,14 @@ use crate::animation::active::Active;
 use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::check_elapsed;
+use crate::asset::keyframe::KeyframeCursor;
+use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::keyframe_cursor as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, ParamsJob, Step, Uniform, Upload};
+use crate::shared::animation::clip;
 use crate::shared::animation::keyframe_cursor::KeyframeCursorParams;
+
+impl SeenAs<clip::KeyframeCursor> for KeyframeCursor {}
 
 /// Finds the keyframe cursors of a crowd's instances on the GPU.
 #[derive(Debug, Clone)]
@@ -99,7 +104,7 @@ fn bind(
         clips: clips.clips.slice(),
         timelines: clips.timelines.slice(),
         times: clips.times.slice(),
-        cursors: crowd.cursors.slice(),
+        cursors: crowd.cursors.slice().cast(),
         updated_instances: listed.instances.slice(),
         dispatches: listed.dispatches.slice(),
         history: listed.history.slice(),

@@ -27,9 +27,12 @@
 
 use crate::InputError;
 use crate::asset::indices::check_triangles;
+#[doc(inline)]
 pub use crate::asset::tangents::{
     Adjacency, COORDINATE_LIMIT, DEGENERATE, TANGENT_BOUND, TangentMesh, VANISHING,
 };
+use crate::asset::tangents::{LARGEST_BITS, LEAST_BITS};
+use crate::shared::surface::tangent as shared;
 
 #[cfg(feature = "gpu")]
 mod pass;
@@ -37,6 +40,12 @@ pub mod reference;
 
 #[cfg(feature = "gpu")]
 pub use pass::{TangentBuffers, TangentPass};
+
+// `relievo-asset` repeats the constants of the kernel.
+const _: () = assert!(DEGENERATE.to_bits() == shared::DEGENERATE.to_bits());
+const _: () = assert!(VANISHING.to_bits() == shared::VANISHING.to_bits());
+const _: () = assert!(LEAST_BITS == shared::LEAST_BITS && LEAST_BITS == shared::LEAST.to_bits());
+const _: () = assert!(LARGEST_BITS == shared::LARGEST_BITS);
 
 /// Result of [`split_mirrored`]: the vertices to copy and the changed triangles.
 #[derive(Debug, Clone, PartialEq, Eq)]
