@@ -128,7 +128,7 @@ pub use statistics::{
     BudgetStatistics, CharacterStatistics, LevelStatistics, ObjectStatistics, SceneStatistics, StageTimes,
     ViewStatistics,
 };
-pub use terrain::{EndlessLimits, EndlessStatistics, SampleMask, TerrainHole, TerrainSource};
+pub use terrain::{EndlessLimits, EndlessStatistics, GroundRelief, SampleMask, TerrainHole, TerrainSource};
 pub(crate) use view::ViewShadow;
 pub use view::{DitherPattern, View};
 pub use wanted::Wanted;

@@ -6,7 +6,7 @@ use glam::{DVec3, Quat, Vec3};
 
 use super::parse_character::CharacterDetail;
 use crate::animation::Wrap;
-use crate::scene::{EndlessLimits, LevelOfDetail, TerrainHole, Transition};
+use crate::scene::{EndlessLimits, GroundRelief, LevelOfDetail, TerrainHole, Transition};
 use crate::surface::ReliefShadow;
 use crate::surface::relief::ReliefMethod;
 use crate::terrain::fixed::FeatureMode;
@@ -26,6 +26,8 @@ pub(super) struct TerrainEntry {
     pub holes: Option<Vec<HoleEntry>>,
     /// The elevation map of endless terrain.
     pub elevation: Option<ElevationEntry>,
+    /// The relief of textures.
+    pub relief: Option<GroundRelief>,
     /// Files of injected heights, and how these are injected.
     pub features: Vec<PathBuf>,
     pub feature_mode: FeatureMode,

@@ -12,7 +12,7 @@ use super::parse_object::{character, mesh};
 use super::spec::{SceneFile, SunOptions};
 use crate::InputError;
 use crate::asset::Light;
-use crate::scene::{EndlessLimits, TerrainHole};
+use crate::scene::{EndlessLimits, GroundRelief, TerrainHole};
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::morph::{Morph, check_target};
@@ -138,11 +138,13 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         "view",
         "holes",
         "elevation",
+        "relief",
         "features",
         "featureMode",
     ];
     let fields = at.fields(&known)?;
     let recipe = terrain_recipe(&fields.need("config", "the configuration of `relievo terrain`")?)?;
+    let relief = fields.maybe("relief", |at| relief(&at))?;
     let name = |at: &At<'_>| at.text().map(PathBuf::from);
     let features = fields.maybe("features", |at| at.list(1, MOST_FILES)?.iter().map(name).collect())?;
     let features: Vec<PathBuf> = features.unwrap_or_default();
@@ -161,6 +163,7 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
             endless,
             holes,
             elevation,
+            relief,
             features,
             feature_mode,
         });
@@ -184,7 +187,19 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
     }
     let target = target(&fields, &recipe, &patches)?;
     let (endless, holes, elevation) = (None, None, None);
-    Ok(TerrainEntry { recipe, patches, target, endless, holes, elevation, features, feature_mode })
+    Ok(TerrainEntry { recipe, patches, target, endless, holes, elevation, relief, features, feature_mode })
+}
+
+/// The relief of the ground's textures.
+fn relief(at: &At<'_>) -> Result<GroundRelief, InputError> {
+    let fields = at.fields(&["depth", "distance"])?;
+    let number = |name: &str, what: &str, most: f64| {
+        Ok::<_, InputError>(fields.need(name, what)?.number(1e-6, most)? as f32)
+    };
+    Ok(GroundRelief {
+        depth: number("depth", "from the highest to the lowest texel, in world units", 1000.0)?,
+        distance: number("distance", "from the eye, where textures become flat", MOST_VIEW)?,
+    })
 }
 
 fn hole(at: &At<'_>) -> Result<HoleEntry, InputError> {

@@ -116,6 +116,10 @@ impl LoadedScene {
                 Some(elevation) => source.with_elevation(elevation.clone()),
                 None => source,
             };
+            let source = match terrain.relief {
+                Some(relief) => source.with_relief(relief),
+                None => source,
+            };
             let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;
             land = Some(object);
             let source = terrain.recipe.config.seed.clone();

@@ -13,6 +13,7 @@ mod elevation;
 mod endless;
 mod frame;
 mod geomorph;
+mod ground_relief;
 mod health;
 mod host;
 #[path = "../skinning/hull.rs"]

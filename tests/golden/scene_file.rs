@@ -21,12 +21,14 @@ const PICTURES: &[(&str, &str, f32)] = &[
     ("ground_walk_plain", "walk.json", 0.0),
     (FAR, "overlook.json", 0.0),
     ("ground_far_plain", "overlook.json", 0.0),
+    (RELIEF, "scree.json", 0.0),
 ];
 
 /// Ground by height and slope, as somebody sees it who walks there, and from afar. The plain ones have the same world with no more
 /// than its default zones.
 const WALK: &str = "ground_walk";
 const FAR: &str = "ground_far";
+const RELIEF: &str = "ground_relief";
 
 /// The herd from so near that a creature covers more of the picture than may differ; from the file's own camera it does not.
 const NEAR: &str = "scene_herd_near";
@@ -134,6 +136,10 @@ fn ground_without_a_part_of_its_look_is_seen() {
             zone.as_object_mut().expect("a zone").remove(field);
         }
     };
+    let mut flat = scene_of(RELIEF, "scree.json");
+    flat["terrain"].as_object_mut().expect("terrain").remove("relief");
+    let flat = difference(RELIEF, &picture(&player(&flat, 0.0)));
+    assert!(!flat.within(Tolerance::IMAGE), "without relief: {flat:?}");
     let same = with(WALK, "walk.json", &|_| ());
     assert!(same.within(Tolerance::IMAGE), "{same:?}");
     for (what, found) in [

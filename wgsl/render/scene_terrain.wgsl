@@ -6,9 +6,10 @@ import package::wgsl::lod::allowed::{MAX_ALLOWED, camera_allows};
 import package::wgsl::lod::view::LodCamera;
 import package::wgsl::render::scene_kind::{SceneFragment, SceneVertex, triangle_surface};
 import package::wgsl::render::scene_shade::Surface;
+import package::wgsl::render::scene_view::view;
 import package::wgsl::terrain::slope::gradient_normal;
 import package::wgsl::terrain::texturing::{TRIPLANAR_PLANES, color_variation, triplanar_uv, triplanar_weight, triplanar_weights, varied};
-import package::wgsl::terrain::zones::{Zone, steepness, zone_blend, zone_blended, zone_color};
+import package::wgsl::terrain::zones::{Zone, steepness, zone_blend, zone_blended, zone_color, zone_weight};
 
 // Whether to draw a wireframe: triangle edges on unlit, dark ground.
 override WIREFRAME: bool = false;
@@ -81,6 +82,14 @@ struct TerrainParams {
     first_patch: u32,
     // Number of normals along an edge of a node, twice the resolution of its samples; 0 for terrain without such normals.
     normals_width: u32,
+    // Depth of the textures' relief in world units; 0 for flat textures.
+    relief_depth: f32,
+    // Distance from the eye in world units from which on textures are flat. The relief fades from half of it on.
+    relief_distance: f32,
+    // Padding, not read.
+    unused_a: f32,
+    // Padding, not read.
+    unused_b: f32,
 }
 
 // A patch of a terrain.
@@ -238,14 +247,120 @@ fn node_normal(window: u32, at: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(along.x, sqrt(max(1.0 - dot(along, along), 0.0)), along.y);
 }
 
-// Linear colour of the ground at texture coordinates, a height in world units, and a unit normal.
-fn ground_color(uv: vec2<f32>, height: f32, normal: vec3<f32>) -> vec3<f32> {
-    let tiles = vec3<f32>(uv.x, height * terrain.tiles_per_unit, uv.y);
-    // Derivatives need uniform control flow, so they are computed before the loop.
-    let tiles_dx = dpdx(tiles);
-    let tiles_dy = dpdy(tiles);
+// Number of steps of the search for the relief that a ray meets: of a steep ray, and how many more a flat one takes.
+const RELIEF_STEPS: f32 = 16.0;
+const RELIEF_MORE_STEPS: f32 = 48.0;
+// Number of bisections of the last step.
+const RELIEF_BISECTIONS: u32 = 4u;
+// Least cosine between a ray and the normal: a flatter ray is searched as if it were as steep.
+const RELIEF_COSINE: f32 = 0.15;
+
+// The texture whose relief a fragment shows: that of the zone and the plane with the greatest weight.
+struct Relief {
+    // Index of the zone.
+    zone: u32,
+    // The plane from which the texture is projected.
+    plane: u32,
+    // Depth in world units: 0 where no zone and no plane prevails, so that reliefs of two textures do not meet.
+    depth: f32,
+}
+
+// The relief of the ground at a distance from the eye.
+fn ground_relief(height: f32, steep: f32, weights: vec3<f32>, distance: f32) -> Relief {
+    var relief = Relief(0u, 0u, 0.0);
+    var most = 0.0;
+    var sum = 0.0;
+    for (var z = 0u; z < terrain.zone_count; z++) {
+        let weight = zone_weight(zones[z], height, steep);
+        relief.zone = select(relief.zone, z, weight > most);
+        most = max(most, weight);
+        sum += weight;
+    }
+    relief.plane = select(select(2u, 1u, weights.y > weights.z), 0u, weights.x >= max(weights.y, weights.z));
+    let facing = triplanar_weight(weights, relief.plane);
+    let prevails = max(2.0 * most / max(sum, 1e-6) - 1.0, 0.0) * max(2.0 * facing - 1.0, 0.0);
+    let near = 1.0 - smoothstep(0.5 * terrain.relief_distance, terrain.relief_distance, distance);
+    relief.depth = terrain.relief_depth * prevails * near;
+    return relief;
+}
+
+// Height of the relief at a position in tiles, 0 to 1, with the derivatives of the position.
+fn relief_height(relief: Relief, tiles: vec3<f32>, tiles_dx: vec3<f32>, tiles_dy: vec3<f32>) -> f32 {
+    let repeats = zones[relief.zone].repeats;
+    return textureSampleGrad(
+        textures, texture_sampler, repeats * triplanar_uv(relief.plane, tiles), relief.zone,
+        repeats * triplanar_uv(relief.plane, tiles_dx), repeats * triplanar_uv(relief.plane, tiles_dy)).w;
+}
+
+// Way in tiles along a ray from the surface to its first hit of the relief. `way` is the way to the bottom of the relief, and `cosine`
+// that of the angle between the ray and the normal.
+fn relief_hit(
+    relief: Relief, tiles: vec3<f32>, tiles_dx: vec3<f32>, tiles_dy: vec3<f32>, way: vec3<f32>, cosine: f32,
+) -> vec3<f32> {
+    let step = 1.0 / (RELIEF_STEPS + floor((1.0 - cosine) * RELIEF_MORE_STEPS));
+    // Parts of the way: the last point that is known to be above the relief, and the first that is not.
+    var outside = 0.0;
+    var inside = 0.0;
+    var above = 1.0 - relief_height(relief, tiles, tiles_dx, tiles_dy);
+    while above > 0.0 && inside < 1.0 {
+        outside = inside;
+        inside = min(inside + step, 1.0);
+        above = 1.0 - inside - relief_height(relief, tiles + inside * way, tiles_dx, tiles_dy);
+    }
+    for (var i = 0u; i < RELIEF_BISECTIONS; i++) {
+        let middle = 0.5 * (outside + inside);
+        let is_inside = 1.0 - middle <= relief_height(relief, tiles + middle * way, tiles_dx, tiles_dy);
+        outside = select(middle, outside, is_inside);
+        inside = select(inside, middle, is_inside);
+    }
+    return way * inside;
+}
+
+// Unit normal of the relief at a position in tiles, on ground with a unit normal.
+fn relief_normal(relief: Relief, tiles: vec3<f32>, tiles_dx: vec3<f32>, tiles_dy: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    // The reach of differences is that of a pixel, and at least that of a texel.
+    let texel = 1.0 / (zones[relief.zone].repeats * f32(textureDimensions(textures).x));
+    let reach = max(max(length(tiles_dx), length(tiles_dy)), texel);
+    // Directions of the texture's rows and columns in the world.
+    let east = select(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 0.0, 1.0), relief.plane == 1u);
+    let south = select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(0.0, 0.0, 1.0), relief.plane == 0u);
+    let rise = vec2<f32>(
+        relief_height(relief, tiles + reach * east, tiles_dx, tiles_dy) - relief_height(relief, tiles - reach * east, tiles_dx, tiles_dy),
+        relief_height(relief, tiles + reach * south, tiles_dx, tiles_dy) - relief_height(relief, tiles - reach * south, tiles_dx, tiles_dy));
+    let slope = rise * (relief.depth * terrain.tiles_per_unit / (2.0 * reach));
+    return normalize(normal - slope.x * east - slope.y * south);
+}
+
+// Colour and normal of the ground.
+struct Ground {
+    // Linear colour.
+    color: vec3<f32>,
+    // Unit normal, with the relief of the textures.
+    normal: vec3<f32>,
+}
+
+// The ground at texture coordinates, a height in world units, and a unit normal. `ray` is the way from the eye to the surface in
+// world units.
+fn ground_at(uv: vec2<f32>, height: f32, normal: vec3<f32>, ray: vec3<f32>) -> Ground {
+    let surface = vec3<f32>(uv.x, height * terrain.tiles_per_unit, uv.y);
+    // Derivatives need uniform control flow, so they are computed before the loops.
+    let tiles_dx = dpdx(surface);
+    let tiles_dy = dpdy(surface);
     let weights = select(vec3<f32>(1.0, 0.0, 0.0), triplanar_weights(normal), terrain.planes == TRIPLANAR_PLANES);
     let steep = steepness(normal);
+    var tiles = surface;
+    var relieved = normal;
+    if terrain.relief_depth > 0.0 {
+        let distance = length(ray);
+        let relief = ground_relief(height, steep, weights, distance);
+        if relief.depth > 0.0 {
+            let direction = ray / distance;
+            let cosine = max(-dot(direction, normal), RELIEF_COSINE);
+            let way = direction * (relief.depth * terrain.tiles_per_unit / cosine);
+            tiles += relief_hit(relief, surface, tiles_dx, tiles_dy, way, cosine);
+            relieved = relief_normal(relief, tiles, tiles_dx, tiles_dy, normal);
+        }
+    }
     var blend = zone_blend();
     for (var z = 0u; z < terrain.zone_count; z++) {
         let zone = zones[z];
@@ -258,11 +373,11 @@ fn ground_color(uv: vec2<f32>, height: f32, normal: vec3<f32>) -> vec3<f32> {
         }
         blend = zone_blended(blend, zone, height, steep, texel);
     }
-    let color = zone_color(blend, terrain.additive != 0u);
-    if terrain.variation == 0.0 {
-        return color;
+    var color = zone_color(blend, terrain.additive != 0u);
+    if terrain.variation != 0.0 {
+        color = varied(color, color_variation(uv), terrain.variation);
     }
-    return varied(color, color_variation(uv), terrain.variation);
+    return Ground(color, relieved);
 }
 
 // Surface of a fragment of the ground or of its wireframe.
@@ -277,7 +392,11 @@ fn terrain_surface(in: SceneFragment) -> Surface {
         if terrain.normals_width != 0u && in.words.y != 0u {
             surface.normal = normalize(mix(node_normal(in.words.x, in.values.xy), surface.normal, in.values.z));
         }
-        surface.color = ground_color(in.uv.xy, in.values.w, surface.normal);
+        // In a parallel view, all rays have one direction, and no relief.
+        let ray = select(vec3<f32>(1e30, 0.0, 0.0), surface.position - view.eye.xyz, view.eye.w == 1.0);
+        let ground_here = ground_at(in.uv.xy, in.values.w, surface.normal, ray);
+        surface.color = ground_here.color;
+        surface.normal = ground_here.normal;
     }
     // Above 0 in a triangle with a corner in a hole.
     surface.alpha = select(1.0, 0.0, in.uv.z > 1e-4);

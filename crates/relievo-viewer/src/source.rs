@@ -69,26 +69,49 @@ pub struct Site {
     pub url: String,
 }
 
+/// How often a server is asked for what it is still preparing, and the seconds in between.
+const TRIES: usize = 30;
+const PAUSE: f64 = 1.0;
+
+/// The status of what a server is still preparing.
+const NOT_READY: u16 = 503;
+
+/// The error for an answer without the file. The name of the file comes before it.
+pub(crate) fn answered(status: u16) -> io::Error {
+    let kind = if status == NOT_READY { io::ErrorKind::ResourceBusy } else { io::ErrorKind::Other };
+    io::Error::new(kind, format!("the server answers {status}"))
+}
+
 impl Source for Site {
     fn read<'a>(&'a self, name: &'a Path) -> Reading<'a> {
         let url = beside(&self.url, name);
-        #[cfg(target_arch = "wasm32")]
-        return Box::pin(async move { Ok(crate::web::fetched(&url).await?.into()) });
-        #[cfg(not(target_arch = "wasm32"))]
         Box::pin(async move {
-            let got = relievo_delivery::client::get(&url, None);
-            got.map(Into::into).map_err(|error| match error {
-                // The name of the file comes before it.
-                FetchError::Status { status, .. } => io::Error::other(format!("the server answers {status}")),
-                FetchError::Network { reason, .. } => io::Error::other(reason),
-                error => io::Error::other(error),
-            })
+            for _ in 1..TRIES {
+                match fetched(&url).await {
+                    Err(error) if error.kind() == io::ErrorKind::ResourceBusy => sleep(PAUSE).await,
+                    other => return other.map(Into::into),
+                }
+            }
+            fetched(&url).await.map(Into::into)
         })
     }
 
     fn url(&self, name: &Path) -> Option<String> {
         Some(beside(&self.url, name))
     }
+}
+
+#[cfg(target_arch = "wasm32")]
+use crate::web::fetched;
+
+/// Reads a whole file by its address.
+#[cfg(not(target_arch = "wasm32"))]
+async fn fetched(url: &str) -> io::Result<Vec<u8>> {
+    relievo_delivery::client::get(url, None).map_err(|error| match error {
+        FetchError::Status { status, .. } => answered(status),
+        FetchError::Network { reason, .. } => io::Error::other(reason),
+        error => io::Error::other(error),
+    })
 }
 
 /// Scenes that the viewer brings along, whose packages lie beside the page.

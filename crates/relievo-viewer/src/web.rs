@@ -118,11 +118,7 @@ pub(crate) async fn fetched(address: &str) -> io::Result<Vec<u8>> {
     let response = JsFuture::from(window.fetch_with_str(address)).await.map_err(|error| other(&error))?;
     let response: web_sys::Response = response.dyn_into().map_err(|error| other(&error))?;
     if !response.ok() {
-        return Err(io::Error::other(format!(
-            "the server answers {} {}",
-            response.status(),
-            response.status_text()
-        )));
+        return Err(crate::source::answered(response.status()));
     }
     let body = response.array_buffer().map_err(|error| other(&error))?;
     let body = JsFuture::from(body).await.map_err(|error| other(&error))?;

@@ -112,6 +112,10 @@ fn drawable(
         variation: config.variation as f32,
         first_patch: first as u32,
         normals_width: 0,
+        relief_depth: source.relief.map_or(0.0, |relief| relief.depth),
+        relief_distance: source.relief.map_or(1.0, |relief| relief.distance),
+        unused_a: 0.0,
+        unused_b: 0.0,
     };
     let patches = Buffer::new(gpu, "patches", fields.count.max(1) as usize)?;
     if !shown.is_empty() {

@@ -29,8 +29,8 @@ pub use endless::{EndlessLimits, EndlessStatistics, SampleMask, TerrainHole};
 #[cfg(test)]
 pub(crate) use in_view::nowhere;
 use morphing::Morphing;
-pub use source::TerrainSource;
 use source::check_patches;
+pub use source::{GroundRelief, TerrainSource};
 
 /// Terrain in a scene.
 #[derive(Debug)]

@@ -23,6 +23,35 @@ pub(super) enum Origin {
     Fields { config: Box<TerrainConfig>, fields: Fields },
 }
 
+/// Relief of the ground's textures, by the heights in them: stones and tufts cover what is behind them, and have their own shading.
+/// The outline of the ground stays. Colour maps ([`ops::terrain::blend`](crate::ops::terrain::blend)) have no relief.
+///
+/// A fragment shows the relief of the texture that prevails there, found by a search in 16 to 56 equal steps with four
+/// bisections, which may pass through details that are thinner. Where textures blend into each other, the relief becomes flat. Rays that meet the ground at less
+/// than 9° are searched as if they met it at 9°. The normals of a parallel view are those of flat textures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundRelief {
+    /// From the highest to the lowest texel, in world units: above 0, at most 1000.
+    pub depth: f32,
+    /// The distance from the eye, in world units, from which on textures are flat; the relief fades from half of it on. Above 0,
+    /// finite.
+    pub distance: f32,
+}
+
+impl GroundRelief {
+    /// Checks both numbers.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the field.
+    pub fn validate(&self) -> Result<(), InputError> {
+        let Self { depth, distance } = *self;
+        let is_good = depth > 0.0 && depth <= 1000.0;
+        InputError::check(is_good, "relief.depth", depth, || "must be above 0 and at most 1000")?;
+        let is_good = distance > 0.0 && distance.is_finite();
+        InputError::check(is_good, "relief.distance", distance, || "must be above 0 and finite")
+    }
+}
+
 /// Terrain for [`Scene::add_terrain`](crate::scene::Scene::add_terrain): heights, the patches to show, and the textures
 /// of the terrain's zones. The world's origin is the first sample of patch (0, 0), in that patch's north-west corner. A
 /// patch's edge is [`TerrainConfig::terrain_scale`] · ([`TerrainConfig::patch_size`] − 1) world units long. A height
@@ -34,6 +63,8 @@ pub struct TerrainSource {
     pub(super) textures: Option<Vec<TerrainTexture>>,
     pub(super) shading: Shading,
     pub(super) style: TerrainStyle,
+    /// The relief of textures; `None` for flat ones.
+    pub(super) relief: Option<GroundRelief>,
     /// The recipe towards which the heights are blended, and the progress of the blend.
     pub(super) target: Option<(Box<Recipe>, Morph)>,
     /// Extent and memory of endless terrain; `None` for a list of patches.
@@ -144,6 +175,7 @@ impl TerrainSource {
             textures: None,
             shading,
             style,
+            relief: None,
             target: None,
             endless: None,
             holes: None,
@@ -168,6 +200,12 @@ impl TerrainSource {
     #[must_use]
     pub fn with_shading(self, shading: Shading) -> Self {
         Self { shading, ..self }
+    }
+
+    /// Gives the textures a relief near the eye.
+    #[must_use]
+    pub fn with_relief(self, relief: GroundRelief) -> Self {
+        Self { relief: Some(relief), ..self }
     }
 
     /// Sets the appearance of the terrain.
@@ -202,8 +240,11 @@ impl TerrainSource {
     /// The recipe and the limits of endless terrain; `None` for a list of patches.
     ///
     /// # Errors
-    /// [`InputError`] for endless terrain from fields or with a target, and for holes in patches.
+    /// [`InputError`] for endless terrain from fields or with a target, for holes in patches, and for a relief out of its ranges.
     pub(in crate::scene) fn endless_recipe(&self) -> Result<Option<(&Recipe, EndlessLimits)>, InputError> {
+        if let Some(relief) = self.relief {
+            relief.validate()?;
+        }
         let Some(limits) = self.endless else {
             let bound = || "must not be given unless terrain is endless";
             InputError::check(self.holes.is_none(), "holes", "given", bound)?;

@@ -121,6 +121,7 @@ fn members() {
     let _ = size_of::<relievo::scene::SampleMask>; // SampleMask
     let _ = relievo::scene::TerrainSource::with_holes; // TerrainSource::with_holes
     let _ = relievo::scene::TerrainSource::with_elevation; // TerrainSource::with_elevation
+    let _ = relievo::scene::TerrainSource::with_relief; // TerrainSource::with_relief
     let _ = |tiles: relievo::scene::ElevationTiles| tiles.write("".as_ref(), || ()); // ElevationTiles::write
     let _ = size_of::<relievo::scene::ElevationLoader>; // ElevationLoader
     let _ = size_of::<relievo::scene::ElevationMap>; // ElevationMap

@@ -103,6 +103,21 @@ async fn made(site: &Site, path: &str) -> Result<Result<Arc<Resource>, Response<
             }
         };
     }
+    let not_ready = |what: &str| {
+        let mut answer = problem(StatusCode::SERVICE_UNAVAILABLE, &format!("the {what} is being prepared"));
+        answer.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_SECONDS));
+        Ok(Err(answer))
+    };
+    let failed = |what: &str, why: &str| {
+        let why = format!("the {what} could not be prepared: {why}");
+        Ok(Err(problem(StatusCode::INTERNAL_SERVER_ERROR, &why)))
+    };
+    match site.0.scene(path) {
+        Found::Ready(scene) => return Ok(Ok(Arc::new(scene))),
+        Found::Failed(why) => return failed("scene", &why),
+        Found::Cooking => return not_ready("scene"),
+        Found::Missing => {}
+    }
     let Some(model) = path.strip_prefix("models/") else {
         return missing("there is no such file; catalog.json lists what is there");
     };
@@ -113,15 +128,8 @@ async fn made(site: &Site, path: &str) -> Result<Result<Arc<Resource>, Response<
     let package = match site.0.model(name) {
         Found::Ready(package) => package,
         Found::Missing => return missing("there is no such model; catalog.json lists the models"),
-        Found::Failed(why) => {
-            let why = format!("the model could not be prepared: {why}");
-            return Ok(Err(problem(StatusCode::INTERNAL_SERVER_ERROR, &why)));
-        }
-        Found::Cooking => {
-            let mut answer = problem(StatusCode::SERVICE_UNAVAILABLE, "the model is being prepared");
-            answer.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_SECONDS));
-            return Ok(Err(answer));
-        }
+        Found::Failed(why) => return failed("model", &why),
+        Found::Cooking => return not_ready("model"),
     };
     let Some(levels) = levels else {
         return Ok(Ok(Arc::new(site.0.resource_of(&package, Lifetime::Revalidated))));

@@ -47,6 +47,8 @@ pub(super) struct Inner {
     pub cache: Cache,
     built_ins: Box<dyn BuiltIns + Send + Sync>,
     scenes: Vec<SceneSource>,
+    /// Why scenes could not be prepared, by their paths.
+    failed_scenes: RwLock<BTreeMap<String, String>>,
     files: RwLock<Files>,
     packages: RwLock<BTreeMap<String, Package>>,
     pub features: PatchFeatures,
@@ -76,13 +78,15 @@ pub(super) struct MeshKey {
     pub level: usize,
 }
 
-/// What a server knows about a model.
-pub(super) enum Found {
-    /// There is no such model.
+/// What a server knows about a model or a scene.
+pub(super) enum Found<T> {
+    /// There is none of this name.
     Missing,
+    /// It is being prepared.
     Cooking,
+    /// It could not be prepared, and why.
     Failed(String),
-    Ready(CachedPackage),
+    Ready(T),
 }
 
 impl Site {
@@ -148,6 +152,7 @@ impl Site {
             cache,
             built_ins,
             scenes,
+            failed_scenes: RwLock::default(),
             files: RwLock::new(files),
             packages: RwLock::new(packages),
             features,
@@ -187,7 +192,10 @@ impl Site {
         for scene in &self.0.scenes {
             match self.0.cook_scene(scene, watch).await {
                 Ok(resource) => self.0.insert(scene_path(scene), resource),
-                Err(error) => failed.push((scene.path.display().to_string(), error)),
+                Err(error) => {
+                    self.0.failed_scene(scene_path(scene), error.to_string());
+                    failed.push((scene.path.display().to_string(), error));
+                }
             }
         }
         self.0.list();
@@ -307,7 +315,24 @@ impl Inner {
         ]
     }
 
-    pub fn model(&self, name: &str) -> Found {
+    fn failed_scene(&self, path: String, why: String) {
+        self.failed_scenes.write().unwrap_or_else(PoisonError::into_inner).insert(path, why);
+    }
+
+    /// A scene file by its path.
+    pub fn scene(&self, path: &str) -> Found<Resource> {
+        if let Some(resource) = self.file(path) {
+            return Found::Ready(resource);
+        }
+        let failed = self.failed_scenes.read().unwrap_or_else(PoisonError::into_inner).get(path).cloned();
+        match failed {
+            Some(why) => Found::Failed(why),
+            None if self.scenes.iter().any(|scene| scene_path(scene) == path) => Found::Cooking,
+            None => Found::Missing,
+        }
+    }
+
+    pub fn model(&self, name: &str) -> Found<CachedPackage> {
         match self.packages().get(name) {
             None => Found::Missing,
             Some(Package { package: Some(found), .. }) => Found::Ready(found.clone()),

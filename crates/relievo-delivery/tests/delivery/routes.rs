@@ -228,6 +228,34 @@ fn options_are_checked() {
     assert!(error.contains("must have another name than"), "{error}");
 }
 
+/// A scene whose models are still being made into packages is no missing file.
+#[test]
+fn a_scene_is_prepared_before_it_is_served() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = |file: &str| {
+        format!(
+            r#"{{ "meshes": [{{ "file": "{file}", "instances": [{{ "at": [0, 0, 0] }}] }}],
+                 "camera": {{ "at": [0, 1, 4], "look": [0, 0, 0] }} }}"#
+        )
+    };
+    std::fs::write(folder.path().join("rock.rlv"), rock()).expect("written");
+    std::fs::write(folder.path().join("broken.glb"), "no model").expect("written");
+    std::fs::write(folder.path().join("good.json"), scene("rock.rlv")).expect("written");
+    std::fs::write(folder.path().join("bad.json"), scene("broken.glb")).expect("written");
+    let scenes = ["good.json", "bad.json"].map(|name| folder.path().join(name));
+    let own = ServeOptions { scenes: scenes.to_vec(), models: None, ..options(folder.path()) };
+    let site = runtime().block_on(Site::open(own, built_ins())).expect("a site");
+    let host = Host::of(site.clone());
+    let early = host.get("/scenes/good.json", &[]);
+    assert_eq!((early.status, early.header("retry-after")), (503, Some("2")));
+    assert_eq!(host.get("/scenes/none.json", &[]).status, 404);
+    let failed = runtime().block_on(site.cook(&|_, _| {}));
+    assert_eq!(failed.len(), 1);
+    assert_eq!(host.get("/scenes/good.json", &[]).status, 200);
+    let bad = host.get("/scenes/bad.json", &[]);
+    assert!(bad.status == 500 && bad.error().contains("broken.glb"), "{} {}", bad.status, bad.error());
+}
+
 #[test]
 fn a_model_that_cannot_be_used_is_told_and_the_others_are_served() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -125,6 +125,7 @@ impl Driver {
     }
 
     /// The events of what a user does, frame by frame.
+    #[allow(dead_code, reason = "the suite of the page records")]
     pub fn recorded(&mut self, act: impl FnOnce(&mut Self)) -> Vec<Vec<Event>> {
         self.log = Some(Vec::new());
         act(self);

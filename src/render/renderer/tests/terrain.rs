@@ -61,6 +61,10 @@ impl Land {
             variation: self.config.variation as f32,
             first_patch: 0,
             normals_width: 0,
+            relief_depth: 0.0,
+            relief_distance: 1.0,
+            unused_a: 0.0,
+            unused_b: 0.0,
         };
         let patch = |(window, patch): (u32, [i32; 2])| TerrainPatch {
             origin: patch.map(|at| at * (size as i32 - 1)),

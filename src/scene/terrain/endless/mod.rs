@@ -315,6 +315,10 @@ fn drawn(
         variation: config.variation as f32,
         first_patch: 0,
         normals_width: if pool.size.has_normals { grid.shape(0).normals_width() } else { 0 },
+        relief_depth: source.relief.map_or(0.0, |relief| relief.depth),
+        relief_distance: source.relief.map_or(1.0, |relief| relief.distance),
+        unused_a: 0.0,
+        unused_b: 0.0,
     };
     let geometry = TerrainGeometry {
         params: Uniform::new(gpu, "terrain", &params)?,
