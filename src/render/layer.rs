@@ -58,8 +58,8 @@ pub enum Layer {
     /// Two colour attachments, with depth: the surface position in world units (w: 1), and the object and instance
     /// numbers as in [`Layer::Surface`].
     ///
-    /// Positions are relative to the corner of the view's cell ([`Camera::cell`](crate::scene::Camera::cell)). On reliefs, the
-    /// position is the point that the ray meets.
+    /// Positions are relative to the corner of the view's cell ([`Camera::cell`](crate::scene::Camera::cell)). On reliefs
+    /// ([`Scene::add_relief`](crate::scene::Scene::add_relief)), the position is the point that the ray meets.
     Measure,
     /// Surfaces coloured by the level of detail of their instance, or of their node of endless terrain, with depth: red for the
     /// finest, then orange, yellow, green, teal, blue, indigo, and violet for the eighth and all coarser ones. For debugging.

@@ -247,7 +247,7 @@ fn node_normal(window: u32, at: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(along.x, sqrt(max(1.0 - dot(along, along), 0.0)), along.y);
 }
 
-// Number of steps of the search for the relief that a ray meets: of a steep ray, and how many more a flat one takes.
+// Number of steps of the search along a ray that is perpendicular to the ground, and of additional steps along one in the ground.
 const RELIEF_STEPS: f32 = 16.0;
 const RELIEF_MORE_STEPS: f32 = 48.0;
 // Number of bisections of the last step.
@@ -292,8 +292,8 @@ fn relief_height(relief: Relief, tiles: vec3<f32>, tiles_dx: vec3<f32>, tiles_dy
         repeats * triplanar_uv(relief.plane, tiles_dx), repeats * triplanar_uv(relief.plane, tiles_dy)).w;
 }
 
-// Way in tiles along a ray from the surface to its first hit of the relief. `way` is the way to the bottom of the relief, and `cosine`
-// that of the angle between the ray and the normal.
+// Way in tiles along a ray from the surface to its first hit of the relief. `way` is the way to the bottom of the relief. `cosine` is the
+// cosine of the angle between ray and normal.
 fn relief_hit(
     relief: Relief, tiles: vec3<f32>, tiles_dx: vec3<f32>, tiles_dy: vec3<f32>, way: vec3<f32>, cosine: f32,
 ) -> vec3<f32> {
@@ -327,8 +327,9 @@ fn relief_normal(relief: Relief, tiles: vec3<f32>, tiles_dx: vec3<f32>, tiles_dy
     let rise = vec2<f32>(
         relief_height(relief, tiles + reach * east, tiles_dx, tiles_dy) - relief_height(relief, tiles - reach * east, tiles_dx, tiles_dy),
         relief_height(relief, tiles + reach * south, tiles_dx, tiles_dy) - relief_height(relief, tiles - reach * south, tiles_dx, tiles_dy));
-    let slope = rise * (relief.depth * terrain.tiles_per_unit / (2.0 * reach));
-    return normalize(normal - slope.x * east - slope.y * south);
+    let gradient = (rise.x * east + rise.y * south) * (relief.depth * terrain.tiles_per_unit / (2.0 * reach));
+    // The part along the ground: the relief is a height above it.
+    return normalize(normal - (gradient - dot(gradient, normal) * normal));
 }
 
 // Colour and normal of the ground.
@@ -340,7 +341,7 @@ struct Ground {
 }
 
 // The ground at texture coordinates, a height in world units, and a unit normal. `ray` is the way from the eye to the surface in
-// world units.
+// world units; 0 for flat textures.
 fn ground_at(uv: vec2<f32>, height: f32, normal: vec3<f32>, ray: vec3<f32>) -> Ground {
     let surface = vec3<f32>(uv.x, height * terrain.tiles_per_unit, uv.y);
     // Derivatives need uniform control flow, so they are computed before the loops.
@@ -350,8 +351,8 @@ fn ground_at(uv: vec2<f32>, height: f32, normal: vec3<f32>, ray: vec3<f32>) -> G
     let steep = steepness(normal);
     var tiles = surface;
     var relieved = normal;
-    if terrain.relief_depth > 0.0 {
-        let distance = length(ray);
+    let distance = length(ray);
+    if terrain.relief_depth > 0.0 && distance > 0.0 {
         let relief = ground_relief(height, steep, weights, distance);
         if relief.depth > 0.0 {
             let direction = ray / distance;
@@ -392,8 +393,8 @@ fn terrain_surface(in: SceneFragment) -> Surface {
         if terrain.normals_width != 0u && in.words.y != 0u {
             surface.normal = normalize(mix(node_normal(in.words.x, in.values.xy), surface.normal, in.values.z));
         }
-        // In a parallel view, all rays have one direction, and no relief.
-        let ray = select(vec3<f32>(1e30, 0.0, 0.0), surface.position - view.eye.xyz, view.eye.w == 1.0);
+        // Parallel views show flat textures.
+        let ray = select(vec3<f32>(0.0), surface.position - view.eye.xyz, view.eye.w == 1.0);
         let ground_here = ground_at(in.uv.xy, in.values.w, surface.normal, ray);
         surface.color = ground_here.color;
         surface.normal = ground_here.normal;

@@ -8,8 +8,8 @@ const FIELDS: [&str; 8] = ["file", "levels", "relief", "albedo", "normal", "text
 /// The prefix of the names of models and images that a program brings along.
 pub const BUILT_IN: &str = "builtin:";
 
-/// Calls `visit` with each name of a file in a scene file, and with the field that holds it. A zone's texture whose name has no dot is
-/// a built-in one, and no file. Built-in models are visited.
+/// Calls `visit` with each name of a file in a scene file, and with the field that holds it. Names that begin with [`BUILT_IN`] are
+/// visited, too. A zone's texture without a dot in its name is a built-in one, and not visited.
 pub fn each_file_name(scene: &mut Value, visit: &mut dyn FnMut(&str, &mut String)) {
     match scene {
         Value::Object(fields) => {

@@ -209,11 +209,12 @@ impl Document {
         self.root.get("characters")?.as_array()?.iter().find_map(|character| character.get(name))
     }
 
-    /// The same scene with other names of files. `rename` gets each name, and returns another one or `None`.
-    pub(crate) fn renamed(&self, rename: impl Fn(&str) -> Option<String>) -> Self {
+    /// The same scene with other names of files. `rename` gets the field and the name of each file, and returns another
+    /// name or `None`.
+    pub(crate) fn renamed(&self, rename: impl Fn(&str, &str) -> Option<String>) -> Self {
         let mut root = Value::Object(self.root.clone());
-        each_file_name(&mut root, &mut |_, name| {
-            if let Some(other) = rename(name) {
+        each_file_name(&mut root, &mut |field, name| {
+            if let Some(other) = rename(field, name) {
                 *name = other;
             }
         });
@@ -299,7 +300,7 @@ mod tests {
             "camera": {"at": [0, 9, 0], "look": [9, 0, 9]}}"#;
         let document = Document::from_json(text).expect("a scene");
         let renamed =
-            document.renamed(|name| (name != "wall.obj").then(|| format!("http://there/{name}"))).text();
+            document.renamed(|_, name| (name != "wall.obj").then(|| format!("http://there/{name}"))).text();
         for name in ["\"http://there/moss.png\"", "\"http://there/bricks.png\"", "\"wall.obj\""] {
             assert!(renamed.contains(name), "{name} in {renamed}");
         }

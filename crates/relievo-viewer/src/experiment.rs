@@ -22,7 +22,7 @@ enum News {
 #[derive(Default)]
 pub struct Experiment {
     news: Option<Receiver<News>>,
-    /// Tells the one that runs to end.
+    /// Set to cancel the experiment that runs.
     ends: Arc<AtomicBool>,
     began: Option<Instant>,
     /// Steps done, of all.
@@ -37,7 +37,7 @@ impl Experiment {
         self.news.is_some()
     }
 
-    /// Seconds that the rest takes, if its steps take as long as those that are done; `None` before the first one.
+    /// Estimated seconds until the end; `None` before the first step is done.
     pub fn seconds_left(&self) -> Option<f64> {
         let [done, of] = self.steps;
         let passed = self.began.filter(|_| done > 0)?.elapsed().as_secs_f64();

@@ -18,7 +18,7 @@ use relievo_samples::Samples;
 
 use crate::document::{Content, Document};
 use crate::eye::Eye;
-use crate::source::{Source, Throttled};
+use crate::source::{Source, Throttled, sleep};
 use crate::stage::Stage;
 use crate::streaming::{Fetching, Streaming};
 
@@ -56,6 +56,9 @@ impl Known {
         self.files.extend(files.map(|(name, bytes)| (name, bytes.into())));
     }
 }
+
+/// Seconds until a server is asked again for a file that it is preparing.
+const PAUSE: f64 = 2.0;
 
 /// A file that arrived.
 #[derive(Debug, Clone, PartialEq)]
@@ -137,10 +140,11 @@ struct Teller {
 }
 
 impl Teller {
-    fn tell(&self, news: News) {
-        // A viewer that has ended or opened something else does not listen any more.
-        let _ = self.to.send(news);
+    /// Returns whether somebody listens: not a viewer that has ended or opened something else.
+    fn tell(&self, news: News) -> bool {
+        let is_heard = self.to.send(news).is_ok();
         (self.wake)();
+        is_heard
     }
 
     /// Tells what is done now, and lets a page show it.
@@ -186,8 +190,10 @@ impl Loader<'_> {
         let in_file = |source: InputError| Error::InputFile { path: name.clone(), source };
         // Models that are known have levels of detail, and are not read again.
         let built_ins = Prepared(&known);
-        let renamed =
-            document.renamed(|name| known.contains_key(name).then(|| format!("builtin:{PREPARED}{name}")));
+        let renamed = document.renamed(|field, name| {
+            let is_known = field == "file" && known.contains_key(name);
+            is_known.then(|| format!("builtin:{PREPARED}{name}"))
+        });
         let file = renamed.file().map_err(in_file)?;
         if let (Some(url), Some(fetching), true) = (source.url(&name), fetching, Streaming::suits(&file)) {
             let streaming = Streaming::new(file, &url, fetching);
@@ -206,9 +212,9 @@ impl Loader<'_> {
         self.ready(document, world, known, (source, is_framed)).await
     }
 
-    /// Tells that the server does not answer.
-    fn waits(&self, why: &str) {
-        self.teller.tell(News::Step(format!("waiting for the server: {why}")));
+    /// Tells that the server does not answer. Returns whether somebody listens.
+    fn waits(&self, why: &str) -> bool {
+        self.teller.tell(News::Step(format!("waiting for the server: {why}")))
     }
 
     /// Builds a scene of a site, as soon as there is something to show.
@@ -220,11 +226,11 @@ impl Loader<'_> {
         from: (Arc<dyn Source>, bool),
     ) -> Result<Ready, Error> {
         self.teller.step("waiting for what the scene needs").await;
-        let loaded = streaming.begin(|why| self.waits(why)).await?;
+        let loaded = streaming.begin(|why| _ = self.waits(why)).await?;
         self.teller.step("building the scene on the device").await;
         let mut world = loaded.build_async(&gpu).await?;
         self.teller.step("waiting for the coarsest level").await;
-        streaming.appear(&mut world, |why| self.waits(why)).await?;
+        streaming.appear(&mut world, |why| _ = self.waits(why)).await?;
         for arrival in streaming.arrivals() {
             self.teller.tell(News::Arrived(arrival));
         }
@@ -278,7 +284,7 @@ impl Loader<'_> {
         self.teller.step(format!("reading {}", name.display())).await;
         let is_package = name.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rlv"));
         if let Some((fetching, url)) = site.filter(|_| is_package) {
-            let model = fetching.coarsest(&url, |why| self.waits(why)).await?;
+            let model = fetching.coarsest(&url, |why| _ = self.waits(why)).await?;
             return Ok((Document::of_model(name, &model), false));
         }
         let called = name.display().to_string();
@@ -320,7 +326,17 @@ impl Loader<'_> {
             return Ok(());
         }
         let start = web_time::Instant::now();
-        let bytes = source.read(name).await?;
+        let bytes = loop {
+            match source.read(name).await {
+                Err(error)
+                    if error.kind() == io::ErrorKind::ResourceBusy
+                        && self.waits(&format!("it is preparing {called}")) =>
+                {
+                    sleep(PAUSE).await;
+                }
+                read => break read?,
+            }
+        };
         let seconds = start.elapsed().as_secs_f64();
         self.teller.tell(News::Arrived(Arrival { name: called, bytes: bytes.len(), seconds }));
         self.files.borrow_mut().insert(name.to_owned(), bytes);

@@ -69,14 +69,11 @@ pub struct Site {
     pub url: String,
 }
 
-/// How often a server is asked for what it is still preparing, and the seconds in between.
-const TRIES: usize = 30;
-const PAUSE: f64 = 1.0;
-
-/// The status of what a server is still preparing.
+/// The status of a file that a server is still preparing.
 const NOT_READY: u16 = 503;
 
-/// The error for an answer without the file. The name of the file comes before it.
+/// The error for an answer without the file: [`io::ErrorKind::ResourceBusy`] if the server is still preparing it. The name of the file
+/// comes before it.
 pub(crate) fn answered(status: u16) -> io::Error {
     let kind = if status == NOT_READY { io::ErrorKind::ResourceBusy } else { io::ErrorKind::Other };
     io::Error::new(kind, format!("the server answers {status}"))
@@ -85,15 +82,7 @@ pub(crate) fn answered(status: u16) -> io::Error {
 impl Source for Site {
     fn read<'a>(&'a self, name: &'a Path) -> Reading<'a> {
         let url = beside(&self.url, name);
-        Box::pin(async move {
-            for _ in 1..TRIES {
-                match fetched(&url).await {
-                    Err(error) if error.kind() == io::ErrorKind::ResourceBusy => sleep(PAUSE).await,
-                    other => return other.map(Into::into),
-                }
-            }
-            fetched(&url).await.map(Into::into)
-        })
+        Box::pin(async move { fetched(&url).await.map(Into::into) })
     }
 
     fn url(&self, name: &Path) -> Option<String> {

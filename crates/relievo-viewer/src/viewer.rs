@@ -758,7 +758,7 @@ impl Viewer {
         // Beside the saved file, there are no files of a site.
         let source = shown.source.clone();
         let is_own = |name: &str| !name.starts_with("builtin:") && !crate::source::is_address(name);
-        let address = |name: &str| source.url(Path::new(name)).filter(|_| is_own(name));
+        let address = |_: &str, name: &str| source.url(Path::new(name)).filter(|_| is_own(name));
         let bytes = shown.document().renamed(address).text().into_bytes();
         self.request(Request::Save { name, bytes });
     }

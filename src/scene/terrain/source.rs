@@ -24,11 +24,12 @@ pub(super) enum Origin {
 }
 
 /// Relief of the ground's textures, by the heights in them: stones and tufts cover what is behind them, and have their own shading.
-/// The outline of the ground stays. Colour maps ([`ops::terrain::blend`](crate::ops::terrain::blend)) have no relief.
+/// It changes colours and normals alone: depth, positions, velocities and outlines are those of the ground. Colour maps
+/// ([`ops::terrain::blend`](crate::ops::terrain::blend)) and parallel views show flat textures.
 ///
 /// A fragment shows the relief of the texture that prevails there, found by a search in 16 to 56 equal steps with four
 /// bisections, which may pass through details that are thinner. Where textures blend into each other, the relief becomes flat. Rays that meet the ground at less
-/// than 9° are searched as if they met it at 9°. The normals of a parallel view are those of flat textures.
+/// than 9° are searched as if they met it at 9°.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundRelief {
     /// From the highest to the lowest texel, in world units: above 0, at most 1000.

@@ -49,7 +49,7 @@ pub struct ObjectFrame {
 /// Nodes of endless terrain in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct NodeCounts {
-    /// Number of nodes that the frame made. A frame waits for all that it needs.
+    /// Number of nodes that the frame made. Except of velocities, a frame includes the passes that complete the detail.
     pub made: usize,
     /// Number of nodes that the views draw, without culling.
     pub drawn: usize,

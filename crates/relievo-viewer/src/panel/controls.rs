@@ -34,7 +34,11 @@ fn detail(viewer: &mut Viewer, ui: &mut Ui) {
     ui.add(decimals(pixels, 2).text("pixels off"))
         .on_hover_text("By how many pixels anything may be off; 0 is full detail");
     limit(ui, "triangles", &mut quality.has_triangles, |ui| {
-        ui.add(Slider::new(&mut quality.triangles, 100..=5_000_000).logarithmic(true))
+        ui.add(
+            Slider::new(&mut quality.triangles, 100..=5_000_000)
+                .logarithmic(true)
+                .clamping(SliderClamping::Edits),
+        )
     });
     limit(ui, "milliseconds", &mut quality.has_milliseconds, |ui| {
         ui.add(decimals(Slider::new(&mut quality.milliseconds, 1.0..=200.0).logarithmic(true), 1))
@@ -179,7 +183,14 @@ fn wide(value: &mut f32) -> Slider<'_> {
 
 /// A slider that shows so many decimals. A value that it shows stays as it is, while egui's own `max_decimals` rounds it.
 fn decimals(slider: Slider<'_>, count: usize) -> Slider<'_> {
-    slider.clamping(SliderClamping::Edits).custom_formatter(move |value, _| format!("{value:.count$}"))
+    slider.clamping(SliderClamping::Edits).custom_formatter(move |value, _| {
+        let text = format!("{value:.count$}");
+        // No sign before zeros.
+        match text.strip_prefix('-').filter(|digits| digits.chars().all(|digit| "0.".contains(digit))) {
+            Some(digits) => digits.to_owned(),
+            None => text,
+        }
+    })
 }
 
 fn bones(viewer: &mut Viewer, ui: &mut Ui) {
@@ -195,7 +206,8 @@ fn bones(viewer: &mut Viewer, ui: &mut Ui) {
             *far = far.max(1.01 * *near);
         }
         GateBy::Budget => {
-            ui.add(Slider::new(&mut bones.bones, 1..=100_000).logarithmic(true).text("bones a frame"));
+            let bones = Slider::new(&mut bones.bones, 1..=100_000).logarithmic(true);
+            ui.add(bones.clamping(SliderClamping::Edits).text("bones a frame"));
         }
         GateBy::Scene | GateBy::Bounded | GateBy::Off => {}
     }

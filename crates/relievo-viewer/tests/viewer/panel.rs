@@ -302,7 +302,7 @@ fn gates_have_their_parts() {
     assert_eq!(driver.viewer.settings().drag, Drag::Orbit);
 }
 
-/// A section that opens shows values, and changes none: here ones with many digits, and beyond the ends of sliders.
+/// Controls that are shown change no value: here values have many digits, or lie beyond the ends of sliders.
 #[test]
 fn sections_that_open_change_nothing() {
     let mut driver = Driver::new([640, 2400]);
@@ -311,18 +311,29 @@ fn sections_that_open_change_nothing() {
         "gate": { "mode": "skip-period", "range": [1.23456, 31.23456], "period": 0.123456 } }],
       "light": { "direction": [0.41805, -0.1, 0.7193], "ambient": 0.33333 },
       "camera": { "at": [0, 1, 4], "look": [0, 0, 0] },
-      "quality": { "pixels": 77.77777, "milliseconds": 333.33333 }
+      "quality": { "pixels": 77.77777, "triangles": 17, "milliseconds": 333.33333 }
     }"#;
     let files = Memory::default().with("odd.json", scene.as_bytes()).with("creature.rlv", creature());
     driver.viewer.open("odd.json", Arc::new(files));
     driver.settle();
     assert_eq!(driver.viewer.notice(), None);
-    let before = driver.viewer.scene_text();
+    // "Detail" is open from the beginning.
+    let before = driver.viewer.scene_text().expect("a scene");
+    for number in ["77.7777", "\"triangles\": 17", "333.3333", "0.41805", "-0.1", "0.3333"] {
+        assert!(before.contains(number), "{number} in {before}");
+    }
     for section in ["Bones", "Light", "Plots", "Experiment", "Network"] {
         driver.click(section);
         driver.frames(3);
-        assert_eq!(driver.viewer.scene_text(), before, "{section}");
+        assert_eq!(driver.viewer.scene_text().as_ref(), Some(&before), "{section}");
     }
+    // The gate's own values, which come from the extent of the scene.
+    driver.choose("gate", "skip-period");
+    driver.settle();
+    let gate = driver.viewer.scene_text();
+    assert!(gate.as_ref().is_some_and(|text| text.contains("skip-period")));
+    driver.frames(20);
+    assert_eq!(driver.viewer.scene_text(), gate);
 }
 
 #[test]

@@ -15,9 +15,10 @@ const FRAMES: usize = 6000;
 const ROUND: usize = 600;
 const STEP: usize = 20;
 
-/// By which part memory may grow over half of the session: the program's own and the device's, and that of the whole process, of which
-/// the driver keeps some.
+/// Largest growth of the program's own memory, and of the device's, over half of the session, as a fraction.
 const MOST_HEAP: f64 = 0.002;
+
+/// The same for the process, which includes what the driver keeps.
 const MOST_HOST: f64 = 0.02;
 
 /// Bytes of the process's memory, with what the driver keeps.
