@@ -55,7 +55,7 @@ mod shaders {
                 let path = out.join(format!("{}.wgsl", shader.constant().to_lowercase()));
                 bindings.add(&root, &file, &shader);
                 let shader = shader.published(&root, &file);
-                std::fs::write(&path, &shader.flat).expect("OUT_DIR is writable");
+                std::fs::write(&path, compact(&shader.flat)).expect("OUT_DIR is writable");
                 shader.describe(&mut manifest, &core, &path);
                 all.push(shader);
             }
@@ -68,6 +68,27 @@ mod shaders {
         writeln!(manifest, "/// Every shader of the crate.\npub static ALL: &[&Shader] = &[{list}];")
             .expect("a string");
         std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
+    }
+
+    /// The text of a shader, for browsers without spaces that mean nothing: the page is small.
+    fn compact(text: &str) -> String {
+        if std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch != "wasm32") {
+            return text.to_owned();
+        }
+        let mut small = String::with_capacity(text.len());
+        for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            let mut letters = line.chars().peekable();
+            while let Some(letter) = letters.next() {
+                let is_beside =
+                    |letter: Option<&char>| letter.is_some_and(|letter| "{}();,:".contains(*letter));
+                let is_space = letter == ' ' && !line.starts_with("//");
+                if !is_space || !is_beside(small.chars().last().as_ref()) && !is_beside(letters.peek()) {
+                    small.push(letter);
+                }
+            }
+            small.push('\n');
+        }
+        small
     }
 
     /// Path of a generated module, the scene core. It imports everything that the shader of a caller's kind of object needs.

@@ -135,13 +135,16 @@ impl Program<'_> {
             }
         }
         bound.emit(out).map_err(text)?;
-        rename(&out.join(format!("{library}.js")), &names)
+        match profile {
+            SMALL => shrink(&out.join(format!("{library}.js")), &names),
+            _ => Ok(()),
+        }
     }
 }
 
-/// Gives the functions of a script, which a program imports, other names. The names of wasm-bindgen have hashes, which are
-/// a part of the program's size.
-fn rename(script: &Path, names: &[(String, String)]) -> Result<(), String> {
+/// Gives the functions of a script, which a program imports, other names, and leaves out lines of comments and indentation. The names of
+/// wasm-bindgen have hashes, which are a part of the program's size.
+fn shrink(script: &Path, names: &[(String, String)]) -> Result<(), String> {
     let text = |error: std::io::Error| format!("{}: {error}", script.display());
     let mut code = std::fs::read_to_string(script).map_err(text)?;
     for (name, short) in names {
@@ -151,7 +154,11 @@ fn rename(script: &Path, names: &[(String, String)]) -> Result<(), String> {
         }
         code = code.replace(&key, &format!(" {short}: "));
     }
-    std::fs::write(script, code).map_err(text)
+    let is_code = |line: &&str| {
+        !line.is_empty() && !["//", "/**", "* ", "*/"].iter().any(|start| line.starts_with(start))
+    };
+    let lines: Vec<&str> = code.lines().map(str::trim).filter(is_code).collect();
+    std::fs::write(script, lines.join("\n") + "\n").map_err(text)
 }
 
 /// The largest size of the page's WebAssembly and JavaScript together, with brotli, in bytes.

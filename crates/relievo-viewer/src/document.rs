@@ -121,6 +121,11 @@ impl Document {
         }
     }
 
+    /// The scene file as JSON.
+    pub(crate) fn value(&self) -> Value {
+        Value::Object(self.root.clone())
+    }
+
     /// The scene file as text.
     pub fn text(&self) -> String {
         serde_json::to_string_pretty(&self.root).unwrap_or_default() + "\n"
@@ -212,7 +217,7 @@ impl Document {
     /// The same scene with other names of files. `rename` gets the field and the name of each file, and returns another
     /// name or `None`.
     pub(crate) fn renamed(&self, rename: impl Fn(&str, &str) -> Option<String>) -> Self {
-        let mut root = Value::Object(self.root.clone());
+        let mut root = self.value();
         each_file_name(&mut root, &mut |field, name| {
             if let Some(other) = rename(field, name) {
                 *name = other;

@@ -733,10 +733,9 @@ impl Viewer {
     /// What all controls say, as JSON: the scene file as the scene is now, and what is not in a scene file.
     pub fn controls(&mut self) -> serde_json::Value {
         let Some(shown) = &mut self.shown else { return serde_json::Value::Null };
-        let document = shown.document().text();
         let Clock { plays, speed, follows } = shown.clock;
         serde_json::json!({
-            "scene": serde_json::from_str::<serde_json::Value>(&document).unwrap_or_default(),
+            "scene": shown.document().value(),
             "settings": self.settings,
             "time": shown.time(),
             "plays": plays,

@@ -70,7 +70,7 @@ fn detail(viewer: &mut Viewer, ui: &mut Ui) {
 fn legend(ui: &mut Ui) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        ui.label("finest");
+        ui.label("finest ");
         for (level, [red, green, blue]) in LEVEL_COLORS.into_iter().enumerate() {
             let fill = egui::Color32::from(egui::Rgba::from_rgb(red, green, blue));
             let text = egui::RichText::new(level.to_string()).color(egui::Color32::WHITE);
@@ -79,7 +79,7 @@ fn legend(ui: &mut Ui) {
                 .inner_margin(egui::Margin::symmetric(5, 1))
                 .show(ui, |ui| ui.label(text));
         }
-        ui.label("coarsest");
+        ui.label(" coarsest");
     });
 }
 

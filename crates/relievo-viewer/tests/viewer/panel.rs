@@ -319,7 +319,7 @@ fn sections_that_open_change_nothing() {
     assert_eq!(driver.viewer.notice(), None);
     // "Detail" is open from the beginning.
     let before = driver.viewer.scene_text().expect("a scene");
-    for number in ["77.7777", "\"triangles\": 17", "333.3333", "0.41805", "-0.1", "0.3333"] {
+    for number in ["77.7777", "\"triangles\": 17", "333.3333", "0.41804", "-0.1000", "0.3333"] {
         assert!(before.contains(number), "{number} in {before}");
     }
     for section in ["Bones", "Light", "Plots", "Experiment", "Network"] {
