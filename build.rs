@@ -70,26 +70,25 @@ mod shaders {
         std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
     }
 
-    /// The text of a shader, for browsers without spaces that mean nothing: the page is small.
+    /// The text of a shader; for browsers, whose page is small, without comments and without spaces and lines that mean nothing.
     fn compact(text: &str) -> String {
         if std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch != "wasm32") {
             return text.to_owned();
         }
+        let is_code = |line: &&str| !line.trim_start().starts_with("//");
+        let words = text.lines().filter(is_code).flat_map(str::split_whitespace);
         let mut small = String::with_capacity(text.len());
-        for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
-            let mut letters = line.chars().peekable();
-            while let Some(letter) = letters.next() {
-                let is_beside =
-                    |letter: Option<&char>| letter.is_some_and(|letter| "{}();,:".contains(*letter));
-                let is_space = letter == ' ' && !line.starts_with("//");
-                if !is_space || !is_beside(small.chars().last().as_ref()) && !is_beside(letters.peek()) {
-                    small.push(letter);
-                }
-            }
-            small.push('\n');
+        for word in words {
+            let needs_space = !small.ends_with(BREAKS) && !word.starts_with(BREAKS) && !small.is_empty();
+            small += if needs_space { " " } else { "" };
+            small += word;
         }
+        assert!(!small.contains("//"), "a comment behind code would hide all that follows");
         small
     }
+
+    /// Signs beside which a shader needs no space.
+    const BREAKS: [char; 7] = ['{', '}', '(', ')', ';', ',', ':'];
 
     /// Path of a generated module, the scene core. It imports everything that the shader of a caller's kind of object needs.
     const CORE: &str = "wgsl/render/scene_core.wgsl";
@@ -109,7 +108,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
 ";
         Shader::validated(root, &file, "render/scene_core".to_owned(), format!("{least}\n{entries}"));
         let path = out.join("scene_core.wgsl");
-        std::fs::write(&path, core).expect("OUT_DIR is writable");
+        std::fs::write(&path, compact(core)).expect("OUT_DIR is writable");
         writeln!(
             manifest,
             "/// What the texts of kinds stand beside, without entry points; its names have no prefix yet.\n\

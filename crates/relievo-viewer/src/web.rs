@@ -45,7 +45,7 @@ thread_local! {
 }
 
 /// What the viewer shows, as JSON: what it loads (`step`), what is wrong (`notice`), the `scene`, `triangles` in view, `bytes` that
-/// arrived, seconds until the first picture, and whether it rests.
+/// arrived, and seconds until the first picture.
 pub fn state() -> String {
     STATE.with_borrow(String::clone)
 }
@@ -367,7 +367,6 @@ impl Shown {
             "scene": viewer.shown().map(|shown| shown.name.as_str()),
             "ready": viewer.shown().map(|shown| shown.stage.ready()),
             "triangles": last.map(|sample| sample.triangles),
-            "milliseconds": last.map(|sample| sample.frame),
             "bytes": viewer.bytes(),
             "streams": viewer.shown().map(crate::Shown::is_streaming),
             "waits": viewer.shown().and_then(crate::Shown::waits).map(|(why, _)| why),
@@ -379,10 +378,8 @@ impl Shown {
                 Err(why) => json!(why),
             }),
             "measures": viewer.is_measuring(),
-            "rests": viewer.is_resting(),
             "picture": viewer.picture_size(),
             "frames": viewer.shown().map(|shown| shown.stage.world.scene.frames()),
-            "panel": viewer.settings().panel,
             "pixels": viewer.shown().map(|shown| shown.quality.pixels),
             "answer": answer,
             "controls": controls,
