@@ -70,9 +70,11 @@ mod shaders {
         std::fs::write(out.join("shaders.rs"), manifest).expect("OUT_DIR is writable");
     }
 
-    /// The text of a shader; for browsers, whose page is small, without comments and without spaces and lines that mean nothing.
+    /// The text of a shader. In a program for browsers that is optimised for size, it has no comments, and no spaces and lines that mean
+    /// nothing.
     fn compact(text: &str) -> String {
-        if std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch != "wasm32") {
+        let is = |name: &str, wanted: &str| std::env::var(name).is_ok_and(|value| value == wanted);
+        if !is("CARGO_CFG_TARGET_ARCH", "wasm32") || !is("OPT_LEVEL", "z") {
             return text.to_owned();
         }
         let is_code = |line: &&str| !line.trim_start().starts_with("//");
