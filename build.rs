@@ -110,7 +110,7 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
 ";
         Shader::validated(root, &file, "render/scene_core".to_owned(), format!("{least}\n{entries}"));
         let path = out.join("scene_core.wgsl");
-        std::fs::write(&path, compact(core)).expect("OUT_DIR is writable");
+        std::fs::write(&path, core).expect("OUT_DIR is writable");
         writeln!(
             manifest,
             "/// What the texts of kinds stand beside, without entry points; its names have no prefix yet.\n\
