@@ -5,7 +5,7 @@ use relievo_testing as harness;
 use std::pin::pin;
 use std::task::{Context, Poll, Wake};
 
-use harness::gpu;
+use harness::{foreign_adapter, gpu};
 use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::{Buffer, Gpu, GpuError, Options, adapters};
 use relievo::ops::animation::ClipSet;
@@ -31,12 +31,7 @@ fn foreign() -> (wgpu::Device, wgpu::Queue) {
 }
 
 fn foreign_with_instance() -> (wgpu::Instance, wgpu::Device, wgpu::Queue) {
-    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    let instance = wgpu::Instance::new(descriptor);
-    let all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    let name = gpu().adapter().name.clone();
-    let adapter =
-        all.into_iter().find(|adapter| adapter.get_info().name == name).expect("the suite's adapter");
+    let (instance, adapter) = foreign_adapter();
     let (device, queue) =
         pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device");
     (instance, device, queue)

@@ -115,16 +115,19 @@ fn narrowed(map: u32, cell: vec2<i32>, own: f32, radius: f32) -> f32 {
             let distance = dot(gap, gap);
             let reach = narrowest * rise;
             if rise > 0.0 && distance < reach * reach {
+                // With this radius, the cone stays above the node, so no condition below needs a narrower one. At this radius the
+                // comparison above changes its outcome: a rounding there does not change the result.
+                let suffices = sqrt(distance) / rise;
                 if level == 0u {
                     let corners = vec4<f32>(
                         texel(map, node), texel(map, node + vec2<i32>(1, 0)),
                         texel(map, node + vec2<i32>(0, 1)), texel(map, node + vec2<i32>(1, 1)));
                     let offset = node - cell;
                     if is_rim || !rises(corners, offset) {
-                        narrowest = min(narrowest, leaf_radius(corners, offset, own));
+                        narrowest = min(narrowest, max(leaf_radius(corners, offset, own), suffices));
                     }
                 } else if distance >= OPENING * OPENING * f32(1u << (2u * level)) {
-                    narrowest = sqrt(distance) / rise;
+                    narrowest = suffices;
                 } else {
                     open = true;
                 }

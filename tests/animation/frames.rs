@@ -19,7 +19,7 @@ use relievo::ops::animation::{
 };
 use relievo_samples::creature;
 
-use crate::harness::gpu;
+use crate::harness::{foreign_adapter, gpu};
 
 fn frame(number: u32) -> Frame {
     Frame { ticks: number, frame_ticks: 1, frame: number, ahead: 1.0 / 60.0 }
@@ -182,10 +182,7 @@ fn names_both(refused: Result<(), Error>, [path, other]: [RotationPath; 2]) {
 
 /// A device of the suite's adapter as another program opens it.
 fn foreign() -> Gpu {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    let name = gpu().adapter().name.clone();
-    let adapter = all.into_iter().find(|adapter| adapter.get_info().name == name).expect("the suite's");
+    let (_, adapter) = foreign_adapter();
     let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()));
     let (device, queue) = opened.expect("a device");
     Gpu::from_wgpu(device, queue)

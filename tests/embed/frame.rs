@@ -17,7 +17,7 @@ pub fn device() -> Gpu {
 
 /// So many such devices, of one adapter.
 pub fn devices<const COUNT: usize>() -> [Gpu; COUNT] {
-    let adapter = adapter();
+    let (_, adapter) = crate::harness::foreign_adapter();
     [(); COUNT].map(|()| {
         let gpu = opened(&adapter, &wgpu::Limits::default());
         assert_eq!(gpu.device().limits().max_storage_buffers_per_shader_stage, 8);
@@ -27,15 +27,7 @@ pub fn devices<const COUNT: usize>() -> [Gpu; COUNT] {
 
 /// A device with other limits.
 pub fn device_of(limits: &wgpu::Limits) -> Gpu {
-    opened(&adapter(), limits)
-}
-
-/// The suite's adapter, in an instance of its own.
-fn adapter() -> wgpu::Adapter {
-    let name = crate::harness::gpu().adapter().name.clone();
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    adapters.into_iter().find(|adapter| adapter.get_info().name == name).expect("still there")
+    opened(&crate::harness::foreign_adapter().1, limits)
 }
 
 fn opened(adapter: &wgpu::Adapter, limits: &wgpu::Limits) -> Gpu {

@@ -263,11 +263,15 @@ struct Relief {
     plane: u32,
     // Depth in world units: 0 where no zone and no plane prevails, so that reliefs of two textures do not meet.
     depth: f32,
+    // Mip level of the texture.
+    level: f32,
 }
 
-// The relief of the ground at a distance from the eye.
-fn ground_relief(height: f32, steep: f32, weights: vec3<f32>, distance: f32) -> Relief {
-    var relief = Relief(0u, 0u, 0.0);
+// The relief of the ground at a distance from the eye. `tiles_dx` and `tiles_dy` are the derivatives of the position in tiles.
+fn ground_relief(
+    height: f32, steep: f32, weights: vec3<f32>, distance: f32, tiles_dx: vec3<f32>, tiles_dy: vec3<f32>,
+) -> Relief {
+    var relief = Relief(0u, 0u, 0.0, 0.0);
     var most = 0.0;
     var sum = 0.0;
     for (var z = 0u; z < terrain.zone_count; z++) {
@@ -281,35 +285,33 @@ fn ground_relief(height: f32, steep: f32, weights: vec3<f32>, distance: f32) -> 
     let prevails = max(2.0 * most / max(sum, 1e-6) - 1.0, 0.0) * max(2.0 * facing - 1.0, 0.0);
     let near = 1.0 - smoothstep(0.5 * terrain.relief_distance, terrain.relief_distance, distance);
     relief.depth = terrain.relief_depth * prevails * near;
+    let footprint = max(length(triplanar_uv(relief.plane, tiles_dx)), length(triplanar_uv(relief.plane, tiles_dy)));
+    relief.level = log2(max(footprint * zones[relief.zone].repeats * f32(textureDimensions(textures).x), 1.0));
     return relief;
 }
 
-// Height of the relief at a position in tiles, 0 to 1, with the derivatives of the position.
-fn relief_height(relief: Relief, tiles: vec3<f32>, tiles_dx: vec3<f32>, tiles_dy: vec3<f32>) -> f32 {
-    let repeats = zones[relief.zone].repeats;
-    return textureSampleGrad(
-        textures, texture_sampler, repeats * triplanar_uv(relief.plane, tiles), relief.zone,
-        repeats * triplanar_uv(relief.plane, tiles_dx), repeats * triplanar_uv(relief.plane, tiles_dy)).w;
+// Height of the relief at a position in tiles, 0 to 1.
+fn relief_height(relief: Relief, tiles: vec3<f32>) -> f32 {
+    let at = zones[relief.zone].repeats * triplanar_uv(relief.plane, tiles);
+    return textureSampleLevel(textures, texture_sampler, at, relief.zone, relief.level).w;
 }
 
 // Way in tiles along a ray from the surface to its first hit of the relief. `way` is the way to the bottom of the relief. `cosine` is the
 // cosine of the angle between ray and normal.
-fn relief_hit(
-    relief: Relief, tiles: vec3<f32>, tiles_dx: vec3<f32>, tiles_dy: vec3<f32>, way: vec3<f32>, cosine: f32,
-) -> vec3<f32> {
+fn relief_hit(relief: Relief, tiles: vec3<f32>, way: vec3<f32>, cosine: f32) -> vec3<f32> {
     let step = 1.0 / (RELIEF_STEPS + floor((1.0 - cosine) * RELIEF_MORE_STEPS));
     // Parts of the way: the last point that is known to be above the relief, and the first that is not.
     var outside = 0.0;
     var inside = 0.0;
-    var above = 1.0 - relief_height(relief, tiles, tiles_dx, tiles_dy);
+    var above = 1.0 - relief_height(relief, tiles);
     while above > 0.0 && inside < 1.0 {
         outside = inside;
         inside = min(inside + step, 1.0);
-        above = 1.0 - inside - relief_height(relief, tiles + inside * way, tiles_dx, tiles_dy);
+        above = 1.0 - inside - relief_height(relief, tiles + inside * way);
     }
     for (var i = 0u; i < RELIEF_BISECTIONS; i++) {
         let middle = 0.5 * (outside + inside);
-        let is_inside = 1.0 - middle <= relief_height(relief, tiles + middle * way, tiles_dx, tiles_dy);
+        let is_inside = 1.0 - middle <= relief_height(relief, tiles + middle * way);
         outside = select(middle, outside, is_inside);
         inside = select(inside, middle, is_inside);
     }
@@ -317,16 +319,15 @@ fn relief_hit(
 }
 
 // Unit normal of the relief at a position in tiles, on ground with a unit normal.
-fn relief_normal(relief: Relief, tiles: vec3<f32>, tiles_dx: vec3<f32>, tiles_dy: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
-    // The reach of differences is that of a pixel, and at least that of a texel.
-    let texel = 1.0 / (zones[relief.zone].repeats * f32(textureDimensions(textures).x));
-    let reach = max(max(length(tiles_dx), length(tiles_dy)), texel);
+fn relief_normal(relief: Relief, tiles: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    // The reach of differences is a texel of the mip level.
+    let reach = exp2(relief.level) / (zones[relief.zone].repeats * f32(textureDimensions(textures).x));
     // Directions of the texture's rows and columns in the world.
     let east = select(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 0.0, 1.0), relief.plane == 1u);
     let south = select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(0.0, 0.0, 1.0), relief.plane == 0u);
     let rise = vec2<f32>(
-        relief_height(relief, tiles + reach * east, tiles_dx, tiles_dy) - relief_height(relief, tiles - reach * east, tiles_dx, tiles_dy),
-        relief_height(relief, tiles + reach * south, tiles_dx, tiles_dy) - relief_height(relief, tiles - reach * south, tiles_dx, tiles_dy));
+        relief_height(relief, tiles + reach * east) - relief_height(relief, tiles - reach * east),
+        relief_height(relief, tiles + reach * south) - relief_height(relief, tiles - reach * south));
     let gradient = (rise.x * east + rise.y * south) * (relief.depth * terrain.tiles_per_unit / (2.0 * reach));
     // The part along the ground: the relief is a height above it.
     return normalize(normal - (gradient - dot(gradient, normal) * normal));
@@ -353,13 +354,13 @@ fn ground_at(uv: vec2<f32>, height: f32, normal: vec3<f32>, ray: vec3<f32>) -> G
     var relieved = normal;
     let distance = length(ray);
     if terrain.relief_depth > 0.0 && distance > 0.0 {
-        let relief = ground_relief(height, steep, weights, distance);
+        let relief = ground_relief(height, steep, weights, distance, tiles_dx, tiles_dy);
         if relief.depth > 0.0 {
             let direction = ray / distance;
             let cosine = max(-dot(direction, normal), RELIEF_COSINE);
             let way = direction * (relief.depth * terrain.tiles_per_unit / cosine);
-            tiles += relief_hit(relief, surface, tiles_dx, tiles_dy, way, cosine);
-            relieved = relief_normal(relief, tiles, tiles_dx, tiles_dy, normal);
+            tiles += relief_hit(relief, surface, way, cosine);
+            relieved = relief_normal(relief, tiles, normal);
         }
     }
     var blend = zone_blend();

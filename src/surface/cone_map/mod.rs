@@ -20,6 +20,6 @@ pub use pass::{ConeMapPass, Cones};
 ///
 /// A radius is a quotient (2.5 ULP) of a distance and a height difference (1 ULP), reduced by a millionth (1 ULP). The distance
 /// is a square root of exact integers (1.5 ULP), or a sum of two products of such roots (3 ULP). Together this is 8 ULP < 1e-6.
-/// The same quantities, with the same error, decide which nodes are skipped. If rounding skips a node by mistake, the minimum is
-/// off by at most another 1e-6. Hence the bound of 2e-6.
+/// The same quantities, with the same error, decide which nodes are skipped. A node that is not skipped gives at least the radius
+/// at which it would be, so if rounding decides otherwise, the minimum is off by at most another 1e-6. Hence the bound of 2e-6.
 pub const RADIUS_BOUND: f32 = 2e-6;

@@ -9,10 +9,7 @@ use crate::surface::map::{Address, HeightMap};
 /// the cone radius.
 pub fn cone_map(map: &HeightMap, pyramid: &[f32], address: Address) -> Vec<[f32; 2]> {
     let layout = PyramidLayout::new([map.width(), map.height()], address);
-    let [columns, rows] = layout.cells;
-    let search = Search { map, pyramid, layout, address };
-    let cells = (0..columns * rows).into_par_iter();
-    cells.map(|cell| search.cone([(cell % columns) as i32, (cell / columns) as i32])).collect()
+    Search { map, pyramid, layout, address, rounding: 1.0 }.cones()
 }
 
 struct Search<'a> {
@@ -20,9 +17,17 @@ struct Search<'a> {
     pyramid: &'a [f32],
     layout: PyramidLayout,
     address: Address,
+    /// What rounding makes of a reach: a factor, 1 but for tests.
+    rounding: f32,
 }
 
 impl Search<'_> {
+    fn cones(&self) -> Vec<[f32; 2]> {
+        let [columns, rows] = self.layout.cells;
+        let cells = (0..columns * rows).into_par_iter();
+        cells.map(|cell| self.cone([(cell % columns) as i32, (cell / columns) as i32])).collect()
+    }
+
     fn cone(&self, cell: [i32; 2]) -> [f32; 2] {
         let cells = self.layout.cells.map(|edge| edge as i32);
         let own = self.highest(0, cell);
@@ -63,16 +68,17 @@ impl Search<'_> {
                 });
                 let rise = self.highest(level, node) - own;
                 let distance = gap[0] * gap[0] + gap[1] * gap[1];
-                let reach = narrowest * rise;
+                let reach = narrowest * rise * self.rounding;
                 if rise > 0.0 && distance < reach * reach {
+                    let suffices = distance.sqrt() / rise;
                     if level == 0 {
                         let corners = self.corners(node);
                         let offset = [node[0] - cell[0], node[1] - cell[1]];
                         if is_rim || !rises(corners, offset) {
-                            narrowest = narrowest.min(leaf_radius(corners, offset, own));
+                            narrowest = narrowest.min(leaf_radius(corners, offset, own).max(suffices));
                         }
                     } else if distance >= OPENING * OPENING * (1_u32 << (2 * level)) as f32 {
-                        narrowest = distance.sqrt() / rise;
+                        narrowest = suffices;
                     } else {
                         open = true;
                     }
@@ -124,4 +130,40 @@ fn rises([h00, h10, h01, h11]: [f32; 4], offset: [i32; 2]) -> bool {
         slopes.map(|slope| (slope * low).min(slope * high)).into_iter().fold(f32::INFINITY, f32::min)
     };
     least([h10 - h00, h11 - h01], offset[0]) + least([h01 - h00, h11 - h10], offset[1]) >= 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Search;
+    use crate::samples::BuiltInMap;
+    use crate::surface::cone_map::RADIUS_BOUND;
+    use crate::surface::height_pyramid::PyramidLayout;
+    use crate::surface::height_pyramid::reference::height_pyramid;
+    use crate::surface::{Address, HeightMap};
+
+    /// A node whose cone is as wide as the narrowest so far counts or not, as a device rounds.
+    #[test]
+    fn a_rounding_that_decides_about_a_node_does_not_decide_about_a_cone() {
+        let noise =
+            (0..64_u32 * 64).map(|at| (at.wrapping_mul(2_654_435_761) >> 8) as f32 / (1 << 24) as f32);
+        let noise = HeightMap::new(64, 64, noise.collect()).expect("valid");
+        for map in [BuiltInMap::Cobbles.height_map(64).expect("valid"), noise] {
+            for address in [Address::Wrap, Address::Clamp] {
+                let pyramid = height_pyramid(&map, address);
+                let cones = |rounding: f32| {
+                    let layout = PyramidLayout::new([map.width(), map.height()], address);
+                    Search { map: &map, pyramid: &pyramid, layout, address, rounding }.cones()
+                };
+                let exact = cones(1.0);
+                for rounding in [1.0 - 4e-7, 1.0 + 4e-7] {
+                    for ([_, radius], [_, exact]) in cones(rounding).into_iter().zip(&exact) {
+                        assert!(
+                            (radius - exact).abs() <= exact * RADIUS_BOUND,
+                            "{radius} instead of {exact}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 }
