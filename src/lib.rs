@@ -8,7 +8,6 @@
 //!
 //! - `scene` has objects, instances, views and queries. Its documentation begins with the order of calls and a complete program.
 //! - `render` has the renderer, the shadow of the sun, and an off-screen target. The renderer draws in the caller's render pass.
-//! - `scene_file` reads scenes from JSON, builds them and draws their frames.
 //! - `gpu` opens a device or takes the caller's device. It has typed buffers, prepared jobs and errors.
 //! - [`asset`] has plain data: models with skeletons, skins, clips, meshes and materials. It reads and writes glTF,
 //!   Wavefront OBJ, and packages of models with their levels of detail ([`asset::package`]).
@@ -17,12 +16,13 @@
 //! **Operations** ([`ops`]) are for programs that bring their own buffers. Each operation is a GPU pass with a CPU reference.
 //! Operations may change in a minor release.
 //!
-//! `scene`, `render`, `scene_file` and `gpu` need the feature `gpu`, which is on by default.
+//! `scene`, `render` and `gpu` need the feature `gpu`, which is on by default.
 //!
 //! Further crates of the repository:
 //!
 //! - `relievo-asset` has [`asset`], [`error`], [`ops::mesh`] and [`ops::hash`](mod@ops::hash), which need no GPU. This crate
 //!   re-exports them; depend on this crate.
+//! - `relievo-scene-file` reads scenes from JSON, and builds them.
 //! - `relievo-samples` has a creature with clips, and height maps with their colours.
 //! - `relievo-lab` checks every kernel against its reference. It compares the kernel's time with the time of copying the same
 //!   number of bytes. It also reports the cost and the visible error of levels of detail on the caller's own data.
@@ -52,6 +52,7 @@
 #[cfg(test)]
 extern crate self as relievo;
 
+mod built_ins;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod ops;
@@ -64,16 +65,16 @@ mod picture;
 #[cfg(feature = "gpu")]
 pub mod render;
 #[cfg(test)]
+#[allow(dead_code, reason = "scene files use the rest")]
 #[path = "../crates/relievo-samples/src/lib.rs"]
 mod samples;
 #[cfg(feature = "gpu")]
 pub mod scene;
-#[cfg(feature = "gpu")]
-pub mod scene_file;
 #[doc(hidden)]
 pub mod shared;
 pub mod srgb;
 
+pub use built_ins::{BuiltIns, NoBuiltIns};
 #[allow(unused_imports, reason = "not all of them are used without a GPU")]
 pub(crate) use ops::{animation, hash, lod, mesh, skinning, surface, terrain};
 #[doc(inline)]

@@ -14,11 +14,10 @@ const FLOORS: &[&[&str]] = &[
     &["asset", "gpu"],
     &["mesh"],
     &["animation", "surface", "terrain"],
-    &["skinning"],
+    &["built_ins", "skinning"],
     &["lod"],
     &["scene"],
     &["render"],
-    &["scene_file"],
 ];
 
 /// A source file: its path below its root, and its text without comments and tests.

@@ -373,7 +373,10 @@ impl Scene {
     }
 
     /// [`Scene::set_level_of_detail`] for a model that may get as many as `levels` levels later.
-    pub(crate) fn set_level_of_detail_among(
+    ///
+    /// # Errors
+    /// As [`Scene::set_level_of_detail`], for a model of `levels` levels.
+    pub fn set_level_of_detail_among(
         &mut self,
         object: ObjectId,
         level_of_detail: &LevelOfDetail,

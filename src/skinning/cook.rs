@@ -25,7 +25,7 @@ const MARGIN: f32 = super::levels::ERROR_MARGIN;
 ///
 /// # Errors
 /// [`InputError`] for a clip of more than an hour.
-pub(crate) fn sparse_poses_of(clip: &Clip) -> Result<usize, InputError> {
+pub fn sparse_poses_of(clip: &Clip) -> Result<usize, InputError> {
     Ok((poses_of(clip)? / SPARSER).clamp(LEAST_POSES, MOST_POSES))
 }
 

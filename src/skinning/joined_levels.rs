@@ -76,7 +76,8 @@ pub fn join_levels(models: &[Model]) -> Result<Model, InputError> {
 const MOST: usize = OBJECT_LEVELS as usize;
 
 /// The poses in which joined levels are measured.
-pub(crate) struct Examined<'a> {
+#[derive(Debug, Clone, Copy)]
+pub struct Examined<'a> {
     /// Indices of the clips.
     pub clips: &'a [usize],
     /// Number of poses of a clip, evenly spaced from start to end.
@@ -89,7 +90,7 @@ pub(crate) struct Examined<'a> {
 ///
 /// # Errors
 /// The same errors as [`join_levels`].
-pub(crate) fn join_levels_in(models: &[Model], examined: &Examined<'_>) -> Result<Model, InputError> {
+pub fn join_levels_in(models: &[Model], examined: &Examined<'_>) -> Result<Model, InputError> {
     InputError::check_within("models.len", models.len(), 2..=MOST)?;
     for (at, model) in models.iter().enumerate() {
         check(model).map_err(|error| error.below(&format!("models[{at}]")))?;

@@ -243,8 +243,7 @@ pub fn add_levels(model: &mut Model, clips: &[usize], poses: usize) -> Result<Ve
 ///
 /// # Errors
 /// The same errors as [`add_levels`].
-#[cfg(feature = "gpu")]
-pub(crate) fn add_levels_and_at_rest(
+pub fn add_levels_and_at_rest(
     model: &mut Model,
     clips: &[usize],
     poses: usize,

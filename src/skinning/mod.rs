@@ -38,17 +38,11 @@ pub mod vertex;
 pub use at_rest::{at_rest, still};
 pub use character_levels::{level_errors, level_errors_within, own_levels};
 pub use collapse::collapse_bones;
-pub use cook::cook;
-#[cfg(feature = "gpu")]
-pub(crate) use cook::sparse_poses_of;
+pub use cook::{cook, sparse_poses_of};
 pub use extent::Extent;
 pub use instance_lod::{FadeRange, InstanceLod};
-pub use joined_levels::join_levels;
-#[cfg(feature = "gpu")]
-pub(crate) use joined_levels::{Examined, join_levels_in};
-#[cfg(feature = "gpu")]
-pub(crate) use levels::add_levels_and_at_rest;
-pub use levels::{MeshLevels, add_levels, add_levels_with_progress};
+pub use joined_levels::{Examined, join_levels, join_levels_in};
+pub use levels::{MeshLevels, add_levels, add_levels_and_at_rest, add_levels_with_progress};
 pub use merged::{Merged, merged};
 #[cfg(feature = "gpu")]
 pub(crate) use motion_bounds::{motion_bounds, spheres};

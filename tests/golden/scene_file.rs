@@ -5,8 +5,8 @@ use std::path::Path;
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 use relievo::scene::Ray;
-use relievo::scene_file::{SceneFile, WorldKind};
 use relievo_lab::measure::{Player, Rendering};
+use relievo_scene_file::{SceneFile, WorldKind};
 use serde_json::{Value, json};
 
 use crate::harness::{Difference, Tolerance, check_golden, gpu};

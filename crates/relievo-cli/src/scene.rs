@@ -11,11 +11,11 @@ use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use relievo::render::Layer;
 use relievo::scene::{Depth, Quality, Transition};
-use relievo::scene_file::LoadedScene;
 use relievo::{Error, InputError};
 use relievo_delivery::client::get_scene;
 use relievo_lab::files::Staged;
 use relievo_lab::measure::{CharacterDump, FrameReport, FrameSummary, ObjectReport, Rendering, ScenePlay};
+use relievo_scene_file::LoadedScene;
 use serde::Serialize;
 
 use crate::Context;
@@ -38,7 +38,7 @@ const DEPTHS: [(&str, Depth); 2] = [("forward", Depth::Forward), ("reversed", De
 ///
 /// Writes frame_0000.png and so on, and report.json: for each frame the pixels by which anything may be off, what was
 /// drawn of each object with each level of detail, and what it cost. docs/scene-files.md, which is
-/// also the documentation of `relievo::scene_file`, describes the format of scenes; examples/scenes has some to begin with:
+/// also the documentation of `relievo_scene_file`, describes the format of scenes; examples/scenes has some to begin with:
 ///
 /// relievo scene examples/scenes/ruins.json --out ruins
 ///

@@ -22,8 +22,8 @@ use relievo::ops::surface::{cone_map, tangent};
 use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::normals;
-use relievo::scene_file::SceneFile;
 use relievo_samples::creature;
+use relievo_scene_file::SceneFile;
 
 /// The program that README.md shows whole.
 const PROGRAM: &str = include_str!("../../../examples/first.rs");

@@ -28,12 +28,10 @@ pub fn model(name: &str) -> Result<Model, InputError> {
 
 /// The samples as built-ins of scene files: the models of [`MODELS`], and the height maps of [`BuiltInMap`] with 512 texels along
 /// an edge. The creature gets a clay-coloured material.
-#[cfg(feature = "gpu")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Samples;
 
-#[cfg(feature = "gpu")]
-impl relievo::scene_file::BuiltIns for Samples {
+impl relievo::BuiltIns for Samples {
     fn model(&self, name: &str) -> Result<Model, InputError> {
         let mut found = model(name)?;
         if name == "creature" {

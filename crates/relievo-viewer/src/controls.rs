@@ -282,7 +282,7 @@ mod tests {
                     "characters": [{ "file": "builtin:creature", "instances": [{ "at": [0, 0, 0] }], "gate": gate, "lod": lod }],
                     "camera": { "at": [0, 1, 4], "look": [0, 0, 0] },
                 });
-                relievo::scene_file::SceneFile::from_json(&text.to_string()).expect("a scene");
+                relievo_scene_file::SceneFile::from_json(&text.to_string()).expect("a scene");
             }
         }
     }

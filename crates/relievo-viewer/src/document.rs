@@ -6,8 +6,8 @@ use glam::DVec3;
 use relievo::InputError;
 use relievo::asset::{Light, Model};
 use relievo::scene::Quality;
-use relievo::scene_file::SceneFile;
 use relievo_delivery::file_names::{each_file_name, models_mut};
+use relievo_scene_file::SceneFile;
 use serde_json::{Map, Value, json};
 
 /// Extensions of files with a model.

@@ -12,9 +12,9 @@ use image::RgbaImage;
 use relievo::asset::Model;
 use relievo::gpu::Gpu;
 use relievo::scene::HeightMap;
-use relievo::scene_file::{BuiltIns, SceneFile, World, WorldKind};
 use relievo::{Error, InputError};
 use relievo_samples::Samples;
+use relievo_scene_file::{BuiltIns, SceneFile, World, WorldKind};
 
 use crate::document::{Content, Document};
 use crate::eye::Eye;
@@ -435,7 +435,7 @@ fn frame(document: &mut Document, world: &mut World) -> Result<f64, Error> {
 
 /// A place before a model or over patches, from which all of it fills the picture; and its extent.
 fn before(world: &World) -> (DVec3, DVec3, f64) {
-    let is_model = |object: &relievo::scene_file::WorldObject| object.kind != WorldKind::Terrain;
+    let is_model = |object: &relievo_scene_file::WorldObject| object.kind != WorldKind::Terrain;
     let tight = world.objects.iter().filter(|object| is_model(object)).find_map(|object| {
         let instance = *world.scene.instances(object.object).ok()?.first()?;
         Some(world.scene.tight_bounds(instance).ok()?.world())

@@ -6,8 +6,8 @@ use egui::{Color32, Pos2, Rect, Stroke};
 use glam::{DAffine3, DVec2, DVec3};
 use relievo::asset::bone_radii;
 use relievo::scene::{Camera, InstanceBone, InstanceId, Placement, WatchedBones};
-use relievo::scene_file::{World, WorldKind};
 use relievo::{Error, InputError};
+use relievo_scene_file::{World, WorldKind};
 
 /// Largest number of boxes that are painted: each takes time of the host.
 const BOXES: usize = 400;

@@ -7,8 +7,8 @@ use relievo::asset::Light;
 use relievo::scene::{
     Camera, Depth, InstanceId, LevelChoice, LevelOfDetail, ObjectId, Quality, Ray, Transition, ViewStatistics,
 };
-use relievo::scene_file::{World, WorldKind};
 use relievo::{Error, InputError};
+use relievo_scene_file::{World, WorldKind};
 use serde_json::Value;
 
 use crate::controls::{Bones, Levels, QualityControls};

@@ -3,8 +3,8 @@
 use relievo::gpu::Gpu;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Rebuild, View, ViewStatistics};
-use relievo::scene_file::{SunOptions, World, WorldKind};
 use relievo::{Error, InputError};
+use relievo_scene_file::{SunOptions, World, WorldKind};
 
 use crate::streaming::Streaming;
 

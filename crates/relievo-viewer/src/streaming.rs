@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use relievo::scene::View;
-use relievo::scene_file::{LoadedScene, SceneFile, World};
 use relievo::{Error, InputError};
 #[cfg(target_arch = "wasm32")]
 use relievo_delivery::client::BrowserTransport as Inner;
@@ -17,6 +16,7 @@ use relievo_delivery::client::{
     Transport, Want,
 };
 use relievo_samples::Samples;
+use relievo_scene_file::{LoadedScene, SceneFile, World};
 use web_time::Instant;
 
 use crate::load::Arrival;

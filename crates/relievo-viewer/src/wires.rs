@@ -9,7 +9,7 @@ use egui::{Color32, Pos2, Stroke};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use relievo::asset::{Mesh, Model};
 use relievo::scene::{InstanceId, ObjectStatistics, ViewStatistics};
-use relievo::scene_file::{World, WorldKind, WorldObject};
+use relievo_scene_file::{World, WorldKind, WorldObject};
 
 use crate::overlay::Projected;
 

@@ -8,9 +8,7 @@ use serde::de::{DeserializeOwned, Error as _, IntoDeserializer, MapAccess, Visit
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
-#[cfg(feature = "gpu")]
-use crate::error::json::{message, shown};
-use crate::error::json::{refused_value, unreadable};
+use crate::error::json::{message, refused_value, shown, unreadable};
 use crate::{Error, InputError};
 
 /// Wrapper that reads a struct from a JSON object only. Without it, serde would also accept an array of the struct's fields.
@@ -55,7 +53,6 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
 }
 
 /// Converts a parsed JSON object to a `T`, with the same errors as [`from_json_object`].
-#[cfg(feature = "gpu")]
 pub(crate) fn from_json_value<T: DeserializeOwned>(what: &str, value: &Value) -> Result<T, InputError> {
     let object: Object<T> = serde_path_to_error::deserialize(value).map_err(|error| {
         let whole = || InputError::new(what, shown(value), message(error.inner()));

@@ -3,7 +3,6 @@
 mod json;
 mod zones;
 
-#[cfg(feature = "gpu")]
 pub(crate) use json::from_json_value;
 pub(crate) use json::{Object, from_json_object, named, read_text, whole};
 pub use zones::{BuiltIn, MAX_REPEATS, MAX_ZONES, Slope, Zone, ZoneTexture};
@@ -367,7 +366,7 @@ impl TerrainConfig {
     }
 
     /// Length of a patch's edge in world units.
-    pub(crate) fn edge_length(&self) -> f64 {
+    pub fn edge_length(&self) -> f64 {
         f64::from(self.patch_size - 1) * self.terrain_scale
     }
 

@@ -185,7 +185,7 @@ impl Zone {
     }
 
     /// Texture of this zone; `index` is the zone's position in the list and selects the default.
-    pub(crate) fn texture_at(&self, index: usize) -> ZoneTexture {
+    pub fn texture_at(&self, index: usize) -> ZoneTexture {
         self.texture.clone().unwrap_or(ZoneTexture::BuiltIn(BuiltIn::DEFAULTS[index.min(3)]))
     }
 

@@ -150,8 +150,7 @@ impl Recipe {
     ///
     /// # Errors
     /// [`InputError`], as [`Recipe::from_json`].
-    #[cfg(feature = "gpu")]
-    pub(crate) fn from_value(value: &serde_json::Value) -> Result<Self, InputError> {
+    pub fn from_value(value: &serde_json::Value) -> Result<Self, InputError> {
         crate::terrain::config::from_json_value::<Raw>("config", value)?.recipe()
     }
 }

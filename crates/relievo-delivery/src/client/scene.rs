@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use relievo::scene::View;
-use relievo::scene_file::{BuiltIns, LoadedScene, SceneFile, World};
 use relievo::{Error, InputError};
+use relievo_scene_file::{BuiltIns, LoadedScene, SceneFile, World};
 
 use super::beside;
 use super::fetcher::{Fetcher, FetcherOptions, FileKey, ModelKey, Want};

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use relievo::InputError;
-use relievo::scene_file::{BuiltIns, SceneFile};
+use relievo_scene_file::{BuiltIns, SceneFile};
 use serde_json::Value;
 
 use super::ServeError;

@@ -8,7 +8,7 @@ use axum::body::Bytes;
 use moka::future::Cache as MeshCache;
 use relievo::InputError;
 use relievo::asset::Model;
-use relievo::scene_file::BuiltIns;
+use relievo_scene_file::BuiltIns;
 use tokio::runtime::Handle;
 
 use super::cooking::{Cache, CachedPackage, Source, object_name};

@@ -51,7 +51,7 @@ fn package(name: &str) -> Vec<u8> {
     relievo::ops::skinning::cook(&file, go_on).expect("cooked").expect("not broken off")
 }
 
-pub fn built_ins() -> Box<dyn relievo::scene_file::BuiltIns + Send + Sync> {
+pub fn built_ins() -> Box<dyn relievo_scene_file::BuiltIns + Send + Sync> {
     Box::new(relievo_samples::Samples)
 }
 

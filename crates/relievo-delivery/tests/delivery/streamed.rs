@@ -7,10 +7,10 @@ use relievo::gpu::Gpu;
 use relievo::image::RgbaImage;
 use relievo::render::{Layer, Offscreen, Renderer};
 use relievo::scene::{Camera, Depth, View};
-use relievo::scene_file::{SceneFile, World};
 use relievo_delivery::client::{FetchState, FetcherOptions, HttpTransport, StreamedScene};
 use relievo_delivery::server::ServeOptions;
 use relievo_samples::Samples;
+use relievo_scene_file::{SceneFile, World};
 
 use super::host::Host;
 

@@ -6,8 +6,8 @@ use std::path::Path;
 use relievo::ops::terrain::export::sha256 as hash_of;
 use relievo::ops::terrain::field::field;
 use relievo::ops::terrain::recipe::Recipe;
-use relievo::scene_file::SceneFile;
 use relievo_delivery::server::{ServeOptions, Site};
+use relievo_scene_file::SceneFile;
 
 use super::host::{Host, built_ins, runtime};
 

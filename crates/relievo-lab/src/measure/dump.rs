@@ -5,7 +5,7 @@ use std::io::Write;
 use relievo::Error;
 use relievo::asset::Affine;
 use relievo::scene::{Camera, Placement};
-use relievo::scene_file::WorldObject;
+use relievo_scene_file::WorldObject;
 use serde::Serialize;
 
 use crate::measure::displacement::{matrix, placed};

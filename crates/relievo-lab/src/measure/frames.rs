@@ -4,7 +4,7 @@
 use relievo::Error;
 use relievo::gpu::{Gpu, GpuError};
 use relievo::scene::{LevelStatistics, ObjectId, Quality, StageTimes};
-use relievo::scene_file::{LoadedScene, WorldKind, WorldObject};
+use relievo_scene_file::{LoadedScene, WorldKind, WorldObject};
 use serde::Serialize;
 
 use crate::measure::displacement::{Displacement, DisplacementMeter};

@@ -8,8 +8,8 @@ use relievo::gpu::Gpu;
 use relievo::render::target::COLOR_FORMAT;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{Camera, Depth, LevelOfDetail, Quality, Transition, View};
-use relievo::scene_file::{SunOptions, World, WorldKind, WorldObject};
 use relievo::{Error, InputError};
+use relievo_scene_file::{SunOptions, World, WorldKind, WorldObject};
 use wgpu::TextureFormat;
 
 /// Largest number of frames to wait for the detail of endless terrain.
@@ -371,7 +371,7 @@ fn columns(camera: &Camera, from: u32, to: u32) -> Camera {
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
-    use relievo::scene_file::SceneFile;
+    use relievo_scene_file::SceneFile;
 
     use super::*;
 

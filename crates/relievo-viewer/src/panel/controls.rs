@@ -3,8 +3,8 @@
 use egui::{Slider, SliderClamping, Ui};
 use relievo::ops::animation::priority::TERMS;
 use relievo::scene::Transition;
-use relievo::scene_file::WorldKind;
 use relievo::shared::render::output_levels::LEVEL_COLORS;
+use relievo_scene_file::WorldKind;
 
 use super::{grouped, list, section};
 use crate::controls::{Drag, GateBy, LevelsBy};

@@ -53,7 +53,7 @@ fn frames(viewer: &Viewer, ui: &mut Ui) {
 /// The mean level of each object but terrain.
 fn levels(viewer: &Viewer, history: &History) -> Vec<Series> {
     let objects = viewer.shown.iter().flat_map(|shown| &shown.stage.world.objects).enumerate();
-    let of = |(at, object): (usize, &relievo::scene_file::WorldObject)| {
+    let of = |(at, object): (usize, &relievo_scene_file::WorldObject)| {
         object.model.as_ref()?;
         Some((object.name.clone(), history.points(|sample| sample.levels.get(at).copied())))
     };

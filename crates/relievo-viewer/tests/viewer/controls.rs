@@ -393,7 +393,7 @@ fn pictures_scenes_and_commands_are_handed_out() {
     let (name, bytes) = saved(".json");
     assert_eq!(name, "crowd-view.json");
     let file =
-        relievo::scene_file::SceneFile::from_json(str::from_utf8(&bytes).expect("text")).expect("a scene");
+        relievo_scene_file::SceneFile::from_json(str::from_utf8(&bytes).expect("text")).expect("a scene");
     assert_eq!(file.quality().pixels, driver.shown().quality.pixels);
     let command = requests.iter().find_map(|request| match request {
         Request::Copy(text) => Some(text.clone()),

@@ -102,8 +102,8 @@ impl Default for EndlessLimits {
 }
 
 impl EndlessLimits {
-    /// The largest view distance of a configuration.
-    pub(crate) fn farthest(config: &TerrainConfig) -> f64 {
+    /// The largest view distance of a configuration, in world units.
+    pub fn farthest(config: &TerrainConfig) -> f64 {
         8.0 * Self::base_spacing(config)
     }
 

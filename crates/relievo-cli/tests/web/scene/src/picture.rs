@@ -16,9 +16,9 @@ use relievo::scene::kind::KindProgram;
 use relievo::scene::{
     Camera, Depth, EndlessLimits, ObjectId, Placement, Play, Quality, Ray, Relief, Scene, TerrainSource, View,
 };
-use relievo::scene_file::SceneFile;
 use relievo::wgpu::TextureFormat;
 use relievo_samples::{creature, maps::BuiltInMap};
+use relievo_scene_file::SceneFile;
 
 /// Pixels of the picture.
 pub const SIZE: [u32; 2] = [512, 384];

@@ -1,8 +1,9 @@
 //! Pseudorandom positions from a seed. The generator is counter-based, so positions have the same bits on every machine.
 
+use relievo::InputError;
+use relievo::ops::hash::{LANES, key_of, threefry2x32};
+
 use super::entries::Scatter;
-use crate::InputError;
-use crate::hash::{LANES, key_of, threefry2x32};
 
 /// Number of random positions tried per instance. If they do not suffice, the area has too little ground and is refused.
 const DRAWS: u64 = 64;

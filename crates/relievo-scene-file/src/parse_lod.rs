@@ -1,13 +1,13 @@
 //! Reads the field `lod` of an object, and the field `quality` of a scene.
 
 use glam::Vec3;
-
-use super::json::{At, COORDINATE, Fields};
-use crate::InputError;
-use crate::scene::{
+use relievo::InputError;
+use relievo::scene::{
     Criterion, Culling, DistanceTo, LevelChoice, LevelOfDetail, Pace, Perceptual, Quality, SizeOf, Transition,
 };
-use crate::shared::lod::object::{OBJECT_LEVELS, RANKS};
+use relievo::shared::lod::object::{OBJECT_LEVELS, RANKS};
+
+use super::json::{At, COORDINATE, Fields};
 
 /// Exclusive upper limit of a triangle budget.
 const MAX_TRIANGLES: i64 = 1 << 32;

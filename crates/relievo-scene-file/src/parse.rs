@@ -3,6 +3,13 @@
 use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
+use relievo::InputError;
+use relievo::asset::Light;
+use relievo::ops::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::morph::{Morph, check_target};
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::scene::{EndlessLimits, GroundRelief, TerrainHole};
 
 use super::camera::{CameraKey, CameraPath, FIELDS_OF_VIEW};
 use super::entries::{ElevationEntry, HoleEntry, ObjectEntry, Spot, TerrainEntry};
@@ -10,13 +17,6 @@ use super::json::{At, COORDINATE, Fields, Json};
 use super::parse_lod::quality;
 use super::parse_object::{character, mesh};
 use super::spec::{SceneFile, SunOptions};
-use crate::InputError;
-use crate::asset::Light;
-use crate::scene::{EndlessLimits, GroundRelief, TerrainHole};
-use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
-use crate::terrain::fixed::FeatureMode;
-use crate::terrain::morph::{Morph, check_target};
-use crate::terrain::recipe::Recipe;
 
 /// Largest number of entries of `meshes`, and of `characters`.
 const MAX_OBJECTS: usize = 256;

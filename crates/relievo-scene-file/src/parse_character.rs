@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use relievo::InputError;
+use relievo::scene::{
+    BoneGate, CharacterOptions, DistanceRange, InfluenceLod, PriorityWeights, SkeletonTier,
+};
+
 use super::json::{At, Fields};
-use crate::InputError;
-use crate::scene::{BoneGate, CharacterOptions, DistanceRange, InfluenceLod, PriorityWeights, SkeletonTier};
 
 /// The names of the fields.
 pub(super) const FIELDS: [&str; 4] = ["gate", "influences", "priorities", "tiers"];

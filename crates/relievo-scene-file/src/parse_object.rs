@@ -3,6 +3,13 @@
 use std::path::Path;
 
 use glam::{DVec3, Quat, Vec3};
+use relievo::InputError;
+use relievo::asset::ENDINGS;
+use relievo::ops::animation::Wrap;
+use relievo::ops::surface::ReliefShadow;
+use relievo::ops::surface::relief::{MAX_SCALE, ReliefMethod};
+use relievo::scene::Transition;
+use relievo::shared::lod::object::OBJECT_LEVELS;
 
 use super::entries::{
     BUILT_IN, EntryKind, InstanceEntry, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Scatter, Source,
@@ -11,13 +18,6 @@ use super::entries::{
 use super::json::{At, COORDINATE, Fields};
 use super::parse_character::{self, CharacterDetail};
 use super::parse_lod::{level_of_detail, transition};
-use crate::InputError;
-use crate::animation::Wrap;
-use crate::asset::ENDINGS;
-use crate::scene::Transition;
-use crate::shared::lod::object::OBJECT_LEVELS;
-use crate::surface::ReliefShadow;
-use crate::surface::relief::{MAX_SCALE, ReliefMethod};
 
 /// Largest number of instances of a mesh and of a character. The limit for characters is lower, because their bones take memory.
 const MAX_MESHES: usize = 1 << 20;

@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Quat, Vec3};
+use relievo::ops::animation::Wrap;
+use relievo::ops::surface::ReliefShadow;
+use relievo::ops::surface::relief::ReliefMethod;
+use relievo::ops::terrain::fixed::FeatureMode;
+use relievo::ops::terrain::morph::Morph;
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::scene::{EndlessLimits, GroundRelief, LevelOfDetail, TerrainHole, Transition};
 
 use super::parse_character::CharacterDetail;
-use crate::animation::Wrap;
-use crate::scene::{EndlessLimits, GroundRelief, LevelOfDetail, TerrainHole, Transition};
-use crate::surface::ReliefShadow;
-use crate::surface::relief::ReliefMethod;
-use crate::terrain::fixed::FeatureMode;
-use crate::terrain::morph::Morph;
-use crate::terrain::recipe::Recipe;
 
 /// The terrain of a scene file.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,26 +6,26 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use image::{DynamicImage, Rgba, RgbaImage};
+#[cfg(not(target_arch = "wasm32"))]
+use relievo::Error;
+use relievo::asset::{Mesh, Model};
+use relievo::ops::skinning::{
+    Examined, add_levels, add_levels_and_at_rest, at_rest, join_levels_in, sparse_poses_of,
+};
+use relievo::ops::surface::{Green, HeightMap, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceVertex};
+use relievo::ops::terrain::config::ZoneTexture;
+use relievo::ops::terrain::elevation::{ElevationLayout, ElevationMap, ElevationTiles};
+use relievo::ops::terrain::features::{FeatureFile, Features};
+use relievo::ops::terrain::texture::TerrainTexture;
+use relievo::scene::{Relief, SampleMask, TerrainHole};
+use relievo::{BuiltIns, NoBuiltIns};
+use relievo::{InputError, srgb};
 
-use super::builtin::{BuiltIns, NoBuiltIns};
 use super::entries::{
     ElevationEntry, EntryKind, HoleEntry, ModelSource, ObjectEntry, PlayEntry, ReliefEntry, Source,
     TerrainEntry,
 };
 use super::spec::SceneFile;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::Error;
-use crate::asset::{Mesh, Model};
-use crate::scene::{Relief, SampleMask, TerrainHole};
-use crate::skinning::{
-    Examined, add_levels, add_levels_and_at_rest, at_rest, join_levels_in, sparse_poses_of,
-};
-use crate::surface::{Green, HeightMap, ReliefMaterial, ReliefOptions, SurfaceMesh, SurfaceVertex};
-use crate::terrain::config::ZoneTexture;
-use crate::terrain::elevation::{ElevationLayout, ElevationMap, ElevationTiles};
-use crate::terrain::features::{FeatureFile, Features};
-use crate::terrain::texture::TerrainTexture;
-use crate::{InputError, srgb};
 
 /// A scene file with the contents of all files that it names. A [`World`](super::World) can be built from it any number of times.
 #[derive(Debug, Clone)]
@@ -102,7 +102,7 @@ impl SceneFile {
     /// [`NoBuiltIns`] has none. Levels are computed for all meshes and characters. For characters, they fit
     /// the clips that the characters play, at 15 poses a second and at most 48 poses per clip. A model that several objects show
     /// is read and simplified only once, for the clips of all these objects. A package (`.rlv`) keeps its own levels. Levels that
-    /// an artist made are joined instead ([`join_levels`](crate::ops::skinning::join_levels)); their errors are measured in the
+    /// an artist made are joined instead ([`join_levels`](relievo::ops::skinning::join_levels)); their errors are measured in the
     /// same poses.
     ///
     /// # Errors
@@ -148,13 +148,14 @@ impl SceneFile {
 
     fn load_with(&self, mut files: Files<'_>) -> Result<LoadedScene, InputError> {
         let zones = self.terrain.iter().flat_map(|terrain| &terrain.recipe.config.zones).enumerate();
-        let texture = |(index, zone): (usize, &crate::terrain::config::Zone)| match zone.texture_at(index) {
-            ZoneTexture::BuiltIn(kind) => Ok(TerrainTexture::built_in(kind)),
-            ZoneTexture::File(path) => {
-                let at = format!("terrain.config.zones[{index}].texture");
-                Ok(TerrainTexture::from_image(&files.decoded(&at, &path)?))
-            }
-        };
+        let texture =
+            |(index, zone): (usize, &relievo::ops::terrain::config::Zone)| match zone.texture_at(index) {
+                ZoneTexture::BuiltIn(kind) => Ok(TerrainTexture::built_in(kind)),
+                ZoneTexture::File(path) => {
+                    let at = format!("terrain.config.zones[{index}].texture");
+                    Ok(TerrainTexture::from_image(&files.decoded(&at, &path)?))
+                }
+            };
         let textures = zones.map(texture).collect::<Result<_, InputError>>()?;
         let elevation = self.terrain.as_ref().map(|terrain| files.elevation(terrain)).transpose()?.flatten();
         let features = self.terrain.as_ref().map(|terrain| files.features(terrain)).transpose()?;
@@ -415,7 +416,7 @@ impl<'a> Files<'a> {
     fn decoded(&self, path: &str, file: &Path) -> Result<DynamicImage, InputError> {
         let bytes = self.bytes(path, file)?;
         // The same type of reader as for images of models: the decoders are compiled for each.
-        crate::surface::map::decode(Cursor::new(&bytes[..])).map_err(|error| {
+        relievo::ops::surface::map::decode(Cursor::new(&bytes[..])).map_err(|error| {
             InputError::new(path, file.display(), format!("must be a whole PNG or JPEG: {error}"))
         })
     }
@@ -517,8 +518,8 @@ fn base_color(model: &Model) -> Result<RgbaImage, InputError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::Samples;
-    use crate::scene_file::NoBuiltIns;
+    use crate::NoBuiltIns;
+    use relievo_samples::Samples;
 
     fn scene(entry: &str) -> Result<SceneFile, InputError> {
         SceneFile::from_json(&format!(r#"{{{entry}, "camera": {{"at": [0, 2, 9], "look": [0, 1, 0]}}}}"#))
@@ -534,8 +535,8 @@ mod tests {
     /// Files by name: the rock and the creature as binary glTF.
     fn files(name: &Path) -> std::io::Result<Vec<u8>> {
         let model = match name.to_str() {
-            Some("rock.glb") => crate::samples::rock(),
-            Some("creature.glb") => crate::samples::creature(),
+            Some("rock.glb") => relievo_samples::rock(),
+            Some("creature.glb") => relievo_samples::creature(),
             _ => return Err(std::io::ErrorKind::NotFound.into()),
         };
         model.and_then(|model| model.to_glb()).map_err(std::io::Error::other)
@@ -609,7 +610,7 @@ mod tests {
         let map = r#""elevation": {"file": "map.png", "range": [-5, 25], "first": [-3, 2], "spacing": 4, "margin": 1}"#;
         let (scene, files) = loaded(&format!(r#""endless": true, {map}"#)).expect("loaded");
         assert_eq!(files, [Path::new("map.png")]);
-        let info = crate::terrain::elevation::ElevationSource::info(&*scene.elevation.expect("a map"));
+        let info = relievo::ops::terrain::elevation::ElevationSource::info(&*scene.elevation.expect("a map"));
         assert_eq!(info.layout, ElevationLayout { spacing: 4, first: [-3, 2], size: [12, 9] });
         let holes = r#""endless": true, "holes": [{"at": [1, 2], "radius": 3}, {"image": "map.png", "first": [-2, 5]}]"#;
         let (scene, files) = loaded(holes).expect("holes");
@@ -666,7 +667,7 @@ mod tests {
     #[test]
     fn files_have_levels_of_their_own() {
         let document = |ids: &str| {
-            let mut near = crate::samples::rock().expect("valid");
+            let mut near = relievo_samples::rock().expect("valid");
             let mut far = Samples.model("wall").expect("valid").meshes.remove(0);
             (far.skin, far.material) = (near.meshes[0].skin, near.meshes[0].material);
             (near.meshes[0].name, far.name) = ("near_0".to_owned(), "far_0".to_owned());

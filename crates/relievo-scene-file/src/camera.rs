@@ -1,8 +1,7 @@
 //! The camera of a scene file: a path over time, and the view's matrices at a moment.
 
 use glam::{DVec3, Mat4, Vec4};
-
-use crate::scene::{Camera, Depth, Placement};
+use relievo::scene::{Camera, Depth, Placement};
 
 /// The range of vertical fields of view, in radians.
 pub(super) const FIELDS_OF_VIEW: [f64; 2] = [0.01, 3.1];

@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
+use relievo::asset::Light;
+use relievo::ops::terrain::config::ZoneTexture;
+use relievo::scene::{Quality, Transition};
+
 use super::camera::CameraPath;
 use super::entries::{EntryKind, HoleEntry, ObjectEntry, Source, TerrainEntry};
-use crate::asset::Light;
-use crate::scene::{Quality, Transition};
-use crate::terrain::config::ZoneTexture;
 
 /// A checked scene file. The files that it names are not read yet.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +24,7 @@ pub struct SceneFile {
     pub(super) background: [f32; 3],
 }
 
-/// Options of the sun's shadow in a scene file, for [`SunShadow`](crate::render::SunShadow).
+/// Options of the sun's shadow in a scene file, for [`SunShadow`](relievo::render::SunShadow).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunOptions {
     /// Texels along an edge of the map, 16 to 8192.

@@ -2,11 +2,10 @@
 
 use std::fmt;
 
+use relievo::InputError;
+use relievo::error::json::{shown, unreadable};
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
-
-use crate::InputError;
-use crate::error::json::{shown, unreadable};
 
 /// The largest absolute value of a coordinate, in world units.
 pub(super) const COORDINATE: f64 = 1e9;

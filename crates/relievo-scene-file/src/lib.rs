@@ -1,21 +1,21 @@
 //! Scene files: JSON that describes terrain, models, reliefs, a light and a camera. `relievo scene`, the demo and the golden
-//! tests draw such files. Any program can do so with this module.
+//! tests draw such files. Any program can do so with this crate.
 //!
 //! [`SceneFile::from_json`] checks the JSON text. [`SceneFile::load`] reads the files that the text names. It reads them through
 //! a function of the caller, so it works without a file system. Names with the prefix `builtin:` come from the caller's
-//! [`BuiltIns`]. `LoadedScene::build` creates a [`Scene`](crate::scene::Scene); [`LoadedScene::build_async`] does so without
+//! [`BuiltIns`]. `LoadedScene::build` creates a [`Scene`](relievo::scene::Scene); [`LoadedScene::build_async`] does so without
 //! blocking.
 //!
-//! Every mistake is an [`InputError`](crate::InputError) with its path inside the file (`characters[1].scatter.count`),
+//! Every mistake is an [`InputError`](relievo::InputError) with its path inside the file (`characters[1].scatter.count`),
 //! the value and the bound.
 //!
-#![doc = include_str!("../../docs/scene-files.md")]
+#![doc = include_str!("../scene-files.md")]
 //!
 //! # An example
 //!
 //! ```
 //! use relievo::scene::Depth;
-//! use relievo::scene_file::SceneFile;
+//! use relievo_scene_file::SceneFile;
 //!
 //! let file = SceneFile::from_json(
 //!     r#"{"terrain": {"config": {"patchSize": 33, "scaleFactor": 6, "seed": "meadow"}},
@@ -31,7 +31,6 @@
 //! # Ok::<(), relievo::InputError>(())
 //! ```
 
-mod builtin;
 mod camera;
 mod entries;
 mod json;
@@ -44,8 +43,8 @@ mod scatter;
 mod spec;
 mod world;
 
-pub use builtin::{BuiltIns, NoBuiltIns};
 pub use camera::CameraPath;
 pub use load::LoadedScene;
+pub use relievo::{BuiltIns, NoBuiltIns};
 pub use spec::{SceneFile, SunOptions};
 pub use world::{World, WorldKind, WorldObject};

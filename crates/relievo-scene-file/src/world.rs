@@ -4,6 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
+use relievo::asset::Model;
+use relievo::gpu::Gpu;
+use relievo::ops::terrain::recipe::Recipe;
+use relievo::scene::{LevelOfDetail, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition};
+use relievo::shared::lod::object::OBJECT_LEVELS;
+use relievo::{Error, InputError};
 
 use super::camera::CameraPath;
 use super::entries::{EntryKind, ObjectEntry, PlayEntry, Spot};
@@ -11,12 +17,6 @@ use super::load::{Loaded, LoadedScene};
 use super::parse_object::upright;
 use super::scatter::{self, Drawn};
 use super::spec::SunOptions;
-use crate::asset::Model;
-use crate::gpu::Gpu;
-use crate::scene::{LevelOfDetail, ObjectId, Placement, Play, Quality, Scene, TerrainSource, Transition};
-use crate::shared::lod::object::OBJECT_LEVELS;
-use crate::terrain::recipe::Recipe;
-use crate::{Error, InputError};
 
 /// A scene built from a file, with the file's camera and quality.
 #[derive(Debug)]
@@ -79,7 +79,7 @@ impl LoadedScene {
     ///
     /// # Errors
     /// [`InputError`], with the path in the scene file, in two cases: the terrain has no patch below an instance on the ground,
-    /// or the device cannot hold an object. [`crate::gpu::GpuError`] for other failures of the device.
+    /// or the device cannot hold an object. [`relievo::gpu::GpuError`] for other failures of the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn build(&self, gpu: &Gpu) -> Result<World, Error> {
         gpu.block_on(self.build_async(gpu))
