@@ -181,7 +181,8 @@ impl Scene {
     /// ([`TerrainSource::with_target`](crate::scene::TerrainSource::with_target)) blends its two recipes. The blended
     /// heights are `from + ⌊(to − from) · time⌋` in integers, so the picture equals the picture of terrain made from these
     /// heights. The next frame blends heights and normals on the device. [`Scene::ground`] and [`Scene::pick`] use the new
-    /// heights at once. A new time costs the host a few nanoseconds per sample; an unchanged time costs nothing.
+    /// heights at once. A new time costs the host a few nanoseconds per sample; an unchanged time costs nothing. The error of endless
+    /// terrain is bounded at every time; its finest heights are made again where they are asked for.
     ///
     /// # Errors
     /// [`InputError`] for an object that is not in this scene, is not terrain, or is terrain without a target, and for a
@@ -199,7 +200,10 @@ impl Scene {
     /// ```
     pub fn morph_terrain(&mut self, terrain: ObjectId, morph: Morph) -> Result<(), InputError> {
         let entry = self.object_mut(terrain)?;
-        terrain_of_mut(&mut *entry.kind)?.morph(&mut entry.instances, morph)
+        match entry.kind.downcast_mut::<Endless>() {
+            Some(endless) => endless.morph(morph),
+            None => terrain_of_mut(&mut *entry.kind)?.morph(&mut entry.instances, morph),
+        }
     }
 
     /// Waits for all submitted work, then reads back the heights of a terrain made from fields. From then on,

@@ -17,7 +17,7 @@ use crate::harness::{Difference, gpu};
 use crate::raw::Raw;
 
 /// Ground that rises and falls by some hundred units over some kilometres.
-fn config() -> TerrainConfig {
+pub fn config() -> TerrainConfig {
     TerrainConfig {
         coarse_levels: 6,
         interpolation: HeightInterpolation::Smooth,
@@ -101,10 +101,14 @@ fn read_positions(raw: &Raw, gpu: &Gpu, camera: &Camera) -> Vec<Option<DVec3>> {
 
 /// The height of the finest triangles at a world position, computed from the definition alone.
 fn truth(config: &TerrainConfig, x: f64, z: f64) -> f64 {
+    between(config, [x, z], |region| smooth(config, &Features::default(), region))
+}
+
+/// The height of the triangles at a world position whose corners are the heights of a region of 2 × 2 samples.
+pub fn between(config: &TerrainConfig, [x, z]: [f64; 2], heights: impl Fn(Region) -> Vec<i32>) -> f64 {
     let [u, v] = [x, z].map(|at| at / config.terrain_scale);
     let first = [u, v].map(|at| at.floor() as i64);
-    let region = Region { first, width: 2, coarser: 0 };
-    let heights = smooth(config, &Features::default(), region);
+    let heights = heights(Region { first, width: 2, coarser: 0 });
     let [a, b, c, d] = [0, 1, 2, 3].map(|at| f64::from(heights[at]) / 65_536.0);
     let [u, v] = [u - u.floor(), v - v.floor()];
     // The diagonal runs from south-west to north-east.

@@ -155,7 +155,10 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         let holes = fields.maybe("holes", holes)?;
         let elevation = fields.maybe("elevation", |at| elevation(&at))?;
         let (patches, endless) = (Vec::new(), Some(limits));
-        let target = None;
+        let target = target(&fields, &recipe, &patches)?;
+        if let (Some(_), Some(given)) = (&target, fields.get("elevation")) {
+            return Err(given.error("must not be given beside a target"));
+        }
         return Ok(TerrainEntry {
             recipe,
             patches,
@@ -258,10 +261,8 @@ fn endless(fields: &Fields<'_>, config: &TerrainConfig) -> Result<Option<Endless
         let missing = |_| Err(fields.missing("endless", "true, since a view distance is given"));
         return view_distance.map_or(Ok(None), missing);
     }
-    for name in ["patches", "target", "time"] {
-        if let Some(given) = fields.get(name) {
-            return Err(given.error("must not be given where terrain is endless"));
-        }
+    if let Some(given) = fields.get("patches") {
+        return Err(given.error("must not be given where terrain is endless"));
     }
     let most = EndlessLimits::farthest(config);
     if let (Some(at), Some(distance)) = (fields.get("view"), view_distance)

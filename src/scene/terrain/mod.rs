@@ -46,6 +46,12 @@ pub(super) struct Terrain {
     morphing: Option<Morphing>,
 }
 
+/// The refusal to blend terrain that has one recipe.
+fn without_target() -> InputError {
+    let bound = "must have been added with a target (TerrainSource::with_target)";
+    InputError::new("terrain", "without a target", bound)
+}
+
 impl Terrain {
     /// The ground at a world position, `x` units east and `z` units south of the origin. `None` where no patch is.
     pub fn point_at(&self, x: f64, z: f64) -> Option<GroundPoint> {
@@ -66,8 +72,7 @@ impl Terrain {
     pub fn morph(&mut self, instances: &mut Instances, morph: Morph) -> Result<(), InputError> {
         morph.validate()?;
         let (Some(morphing), Some((_, current))) = (&mut self.morphing, &mut self.source.target) else {
-            let bound = "must have been added with a target (TerrainSource::with_target)";
-            return Err(InputError::new("terrain", "without a target", bound));
+            return Err(without_target());
         };
         *current = morph;
         for ((at, patch), heights) in self.source.patches.iter().enumerate().zip(morphing.set(morph)) {

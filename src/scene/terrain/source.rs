@@ -93,7 +93,7 @@ impl TerrainSource {
     ///
     /// Views that permit less than 1/16 pixel are drawn as with 1/16, and state no bound.
     ///
-    /// The configuration must be `seamless`. Despiking, erosion and a target are not possible. [`Scene::ground`] and
+    /// The configuration must be `seamless`. Despiking and erosion are not possible. [`Scene::ground`] and
     /// [`Scene::pick`] answer for the finest heights everywhere, whatever is drawn; the host makes those patches when it is asked.
     ///
     /// [`Scene::ground`]: crate::scene::Scene::ground
@@ -217,7 +217,8 @@ impl TerrainSource {
 
     /// Adds a second recipe, towards which the heights are blended. Its samples must be in the same places as the
     /// samples of the first recipe. `morph` is the initial blend; [`Scene::morph_terrain`](crate::scene::Scene::morph_terrain)
-    /// changes it. Zones and textures are taken from the first recipe.
+    /// changes it. Zones and textures are taken from the first recipe. Endless terrain with a target takes three times the memory for
+    /// heights, none for finer normals, and no elevation map; both recipes have the same `coarse_levels`.
     #[must_use]
     pub fn with_target(self, target: Recipe, morph: Morph) -> Self {
         Self { target: Some((Box::new(target), morph)), ..self }
@@ -241,7 +242,7 @@ impl TerrainSource {
     /// The recipe and the limits of endless terrain; `None` for a list of patches.
     ///
     /// # Errors
-    /// [`InputError`] for endless terrain from fields or with a target, for holes in patches, and for a relief out of its ranges.
+    /// [`InputError`] for endless terrain from fields, for holes in patches, and for a relief out of its ranges.
     pub(in crate::scene) fn endless_recipe(&self) -> Result<Option<(&Recipe, EndlessLimits)>, InputError> {
         if let Some(relief) = self.relief {
             relief.validate()?;
@@ -252,12 +253,11 @@ impl TerrainSource {
             InputError::check(self.elevation.is_none(), "elevation", "given", bound)?;
             return Ok(None);
         };
-        let refused =
-            |field: &str| Err(InputError::new(field, "given", "must not be given where terrain is endless"));
-        match (&self.origin, &self.target) {
-            (Origin::Fields { .. }, _) => refused("fields"),
-            (_, Some(_)) => refused("target"),
-            (Origin::Recipe(recipe), None) => Ok(Some((recipe, limits))),
+        match &self.origin {
+            Origin::Fields { .. } => {
+                Err(InputError::new("fields", "given", "must not be given where terrain is endless"))
+            }
+            Origin::Recipe(recipe) => Ok(Some((recipe, limits))),
         }
     }
 

@@ -66,6 +66,7 @@ fn members() {
     let _ = Scene::record; // Scene::record
     let _ = Model::levels_from_file; // Model::levels_from_file
     let _ = Scene::lod_bias; // Scene::lod_bias
+    let _ = Scene::morph_terrain; // Scene::morph_terrain
     let _ = relievo::scene::BoneGate::Bounded; // BoneGate::Bounded
     let _ = relievo::scene::BoneGate::Off; // BoneGate::Off
     let _ = relievo::scene::CharacterOptions::default(); // CharacterOptions
@@ -122,6 +123,7 @@ fn members() {
     let _ = relievo::scene::TerrainSource::with_holes; // TerrainSource::with_holes
     let _ = relievo::scene::TerrainSource::with_elevation; // TerrainSource::with_elevation
     let _ = relievo::scene::TerrainSource::with_relief; // TerrainSource::with_relief
+    let _ = relievo::scene::TerrainSource::with_target; // TerrainSource::with_target
     let _ = |tiles: relievo::scene::ElevationTiles| tiles.write("".as_ref(), || ()); // ElevationTiles::write
     let _ = size_of::<relievo::scene::ElevationLoader>; // ElevationLoader
     let _ = size_of::<relievo::scene::ElevationMap>; // ElevationMap

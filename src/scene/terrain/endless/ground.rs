@@ -13,6 +13,8 @@ use crate::terrain::config::TerrainConfig;
 use crate::terrain::field::{region, region_of};
 use crate::terrain::ground::Ground;
 use crate::terrain::mesh::GroundPoint;
+use crate::terrain::morph::Morph;
+use crate::terrain::morph::reference::morph;
 use crate::terrain::recipe::Recipe;
 use crate::terrain::window::Region;
 use crate::{Error, InputError};
@@ -27,6 +29,7 @@ const KEPT: usize = 1024;
 #[derive(Debug)]
 pub(super) struct FinestGround {
     recipe: Recipe,
+    target: Option<(Box<Recipe>, Morph)>,
     elevation: Option<Elevation>,
     /// The terrain in patches of [`SIZE`] samples.
     patch: TerrainConfig,
@@ -42,11 +45,15 @@ struct Patches {
 }
 
 impl FinestGround {
-    pub fn new(recipe: &Recipe, elevation: Option<Elevation>) -> Result<Self, InputError> {
+    pub fn new(
+        recipe: &Recipe,
+        target: Option<(Box<Recipe>, Morph)>,
+        elevation: Option<Elevation>,
+    ) -> Result<Self, InputError> {
         let patch = TerrainConfig { patch_size: SIZE, ..recipe.config.clone() };
         let patches = Patches { ground: Ground::new(&patch)?, order: VecDeque::new() };
         let edge = patch.edge_length();
-        Ok(Self { recipe: recipe.clone(), elevation, patch, edge, patches: Mutex::new(patches) })
+        Ok(Self { recipe: recipe.clone(), target, elevation, patch, edge, patches: Mutex::new(patches) })
     }
 
     /// The ground at a world position; `None` beyond the world and in holes.
@@ -132,6 +139,11 @@ impl FinestGround {
     /// The heights of a region; `None` while heights of the elevation map are on their way.
     fn heights(&self, samples: Region) -> Result<Option<Vec<i32>>, InputError> {
         let Recipe { config, features, .. } = &self.recipe;
+        if let Some((target, time)) = &self.target {
+            let [from, to] =
+                [&self.recipe, target].map(|recipe| region(&recipe.config, &recipe.features, samples));
+            return Ok(Some(morph(&from, &to, time.fixed_time())));
+        }
         let Some(map) = self.elevation.as_ref().filter(|map| map.reaches(samples)) else {
             return Ok(Some(region(config, features, samples)));
         };

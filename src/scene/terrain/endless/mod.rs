@@ -40,6 +40,7 @@ use crate::terrain::features::Features;
 use crate::terrain::injection::{ChangedPoint, FeatureOffsets};
 use crate::terrain::materials::Materials;
 use crate::terrain::mesh::GroundPoint;
+use crate::terrain::morph::Morph;
 use crate::terrain::node::NodeFacts;
 use crate::terrain::quadtree::{Beside, Cover, Leaf, Node};
 use crate::terrain::recipe::Recipe;
@@ -91,7 +92,7 @@ pub struct EndlessLimits {
     pub capacity: u32,
     /// Samples along an edge of a node: 2^n + 1, n in 3..=8, at most those between two points of the base lattice. Default: 65.
     pub node_size: u32,
-    /// Whether nodes are shaded with normals of twice their resolution. Default: true.
+    /// Whether nodes are shaded with normals of twice their resolution. Default: true. Terrain with a target has none.
     pub finer_normals: bool,
 }
 
@@ -173,6 +174,8 @@ pub(in crate::scene) struct Endless {
     again: BTreeSet<Node>,
     /// The injected heights, by how much they matter.
     offsets: FeatureOffsets,
+    /// The same of the target.
+    target_offsets: Option<FeatureOffsets>,
     /// Whether bounds of nodes have changed since they were placed.
     are_bounds_changed: bool,
     tables: Arc<Mutex<Vec<ViewTable>>>,
@@ -243,6 +246,13 @@ pub(in crate::scene) fn made(
     let grid = Grid::new(&recipe.config, limits.node_size, elevation.is_some())?;
     pool::check(recipe, grid)?;
     check_features(recipe, elevation.is_some())?;
+    let target = source.target.as_ref().map(|(target, _)| &**target);
+    source.check_target()?;
+    if let Some(target) = target {
+        check_target(&recipe.config, target, grid).map_err(|error| error.below("target"))?;
+        let bound = || "must not be given beside a target";
+        InputError::check(elevation.is_none(), "elevation", "given", bound)?;
+    }
     let view_distance = limits.checked(&recipe.config)?;
     let mut instances = Instances::new(limits.capacity as usize);
     let capacity = instances.capacity();
@@ -251,10 +261,10 @@ pub(in crate::scene) fn made(
     let size = PoolSize {
         capacity,
         has_holes: holes.is_some(),
-        has_normals: limits.finer_normals,
+        has_normals: limits.finer_normals && target.is_none(),
         map: elevation.as_ref().map(Elevation::coarser),
     };
-    let pool = Pool::new(gpu, recipe, grid, size)?;
+    let pool = Pool::new(gpu, (recipe, target), grid, size)?;
     let (chunks, draws) = drawn(gpu, layouts, source, (&pool, grid, capacity))?;
     let hidden = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
     for _ in 0..capacity {
@@ -274,9 +284,10 @@ pub(in crate::scene) fn made(
         new: Vec::new(),
         again: BTreeSet::new(),
         offsets: FeatureOffsets::new(&recipe.config, &recipe.features),
+        target_offsets: target.map(|target| FeatureOffsets::new(&target.config, &target.features)),
         are_bounds_changed: false,
         tables: Arc::default(),
-        ground: FinestGround::new(recipe, elevation.clone())?,
+        ground: FinestGround::new(recipe, source.target.clone(), elevation.clone())?,
         elevation,
         holes,
         are_holes_changed: false,
@@ -469,12 +480,21 @@ impl Endless {
     /// Finds the facts of nodes from what the device found.
     fn find_facts(&mut self, nodes: &[Node]) {
         let (config, grid) = (&self.recipe.config, self.grid);
+        let target = self.source.target.as_ref().zip(self.target_offsets.as_ref());
         for node in nodes {
             let Some(resident) = self.residents.get_mut(node) else { continue };
-            let injected = self.offsets.bound(config, grid.region_of(*node));
-            let found = resident.found;
-            let facts =
-                found.map(|found| facts_of(config, grid, node.level, (&found, resident.beyond), injected));
+            let (region, beyond) = (grid.region_of(*node), resident.beyond);
+            let facts = resident.found.map(|found| {
+                let injected = self.offsets.bound(config, region);
+                let Some(((target, _), offsets)) = target else {
+                    return facts_of(config, grid, node.level, (&found, beyond), injected);
+                };
+                let [own, other] = [Some(found.own), found.other]
+                    .map(|facts| FoundFacts { own: facts.unwrap_or(found.own), other: None });
+                let own = facts_of(config, grid, node.level, (&own, beyond), injected);
+                let injected = offsets.bound(&target.config, region);
+                own.blended(facts_of(&target.config, grid, node.level, (&other, beyond), injected))
+            });
             resident.facts = facts.or(resident.facts);
         }
     }
@@ -491,7 +511,7 @@ impl Endless {
         let offsets = FeatureOffsets::new(&recipe.config, features);
         let changed = self.offsets.changed(&offsets);
         (self.recipe, self.offsets) = (recipe, offsets);
-        self.ground = FinestGround::new(&self.recipe, self.elevation.clone())?;
+        self.ground = FinestGround::new(&self.recipe, self.source.target.clone(), self.elevation.clone())?;
         let is_changed = |node: &Node| {
             let region = self.grid.region_of(*node);
             changed.iter().any(|point| point.changes(region))
@@ -520,6 +540,21 @@ impl Endless {
             }
         }
         self.are_bounds_changed = true;
+        Ok(())
+    }
+
+    /// Blends the heights of the two recipes at another time, from the next frame on.
+    ///
+    /// # Errors
+    /// [`InputError`] for terrain without a target, and for a time out of range.
+    pub fn morph(&mut self, morph: Morph) -> Result<(), InputError> {
+        morph.validate()?;
+        let Some((_, current)) = &mut self.source.target else { return Err(super::without_target()) };
+        if *current != morph {
+            *current = morph;
+            self.ground = FinestGround::new(&self.recipe, self.source.target.clone(), None)?;
+            self.pool.blend_again();
+        }
         Ok(())
     }
 
@@ -863,6 +898,17 @@ fn check_features(recipe: &Recipe, has_map: bool) -> Result<(), InputError> {
     InputError::check(recipe.features.is_empty() || !has_map, "features.len", recipe.features.len(), bound)
 }
 
+/// Checks the target of a terrain with some nodes.
+///
+/// # Errors
+/// [`InputError`] for a target of which no nodes can be made, or whose base lattice has another distance between its points.
+fn check_target(config: &TerrainConfig, target: &Recipe, grid: Grid) -> Result<(), InputError> {
+    target.validate(&[], 0)?;
+    let levels = (target.config.coarse_levels, config.coarse_levels);
+    InputError::check_same("coarse_levels", levels.0, levels.1, "as at time 0")?;
+    pool::check(target, grid)
+}
+
 fn check_holes(holes: &[TerrainHole]) -> Result<(), InputError> {
     let below = |(at, hole): (usize, &TerrainHole)| {
         hole.validate().map_err(|error| error.below(&format!("holes[{at}]")))
@@ -894,7 +940,7 @@ fn facts_of(
     config: &TerrainConfig,
     grid: Grid,
     level: u32,
-    (FoundFacts { own, generated }, beyond): (&FoundFacts, Beyond),
+    (FoundFacts { own, other: generated }, beyond): (&FoundFacts, Beyond),
     injected: i64,
 ) -> Facts {
     let below =
@@ -914,6 +960,22 @@ fn facts_of(
     let world = |height: i64| height as f64 / HEIGHT_ONE;
     let heights = [i64::from(own.lowest) - below, i64::from(own.highest) + below].map(world);
     Facts { heights, error: (world(deviation + below) as f32).next_up() }
+}
+
+/// What rounding adds to the error of blended heights, in 1/65536 height units: of a height, and of the triangle's.
+const BLENDED: i64 = 2;
+
+impl Facts {
+    /// The facts of heights between these and others: the surface between two triangles is as far from the heights between as the
+    /// farther one.
+    fn blended(self, other: Self) -> Self {
+        let rounding = BLENDED as f64 / HEIGHT_ONE;
+        let ([low, high], [other_low, other_high]) = (self.heights, other.heights);
+        Self {
+            heights: [low.min(other_low) - rounding, high.max(other_high) + rounding],
+            error: (self.error.max(other.error) + rounding as f32).next_up(),
+        }
+    }
 }
 
 impl ObjectKind for Endless {
@@ -940,7 +1002,8 @@ impl ObjectKind for Endless {
         let MakeOn { gpu, layouts, .. } = target;
         Box::pin(async move {
             let capacity = self.statistics.capacity;
-            let pool = Pool::new(gpu, &self.recipe, self.grid, self.size)?;
+            let target = self.source.target.as_ref().map(|(target, _)| &**target);
+            let pool = Pool::new(gpu, (&self.recipe, target), self.grid, self.size)?;
             let (chunks, _) = drawn(gpu, layouts, &self.source, (&pool, self.grid, capacity))?;
             Ok(OnDevice { chunks, other: Box::new(pool) })
         })
@@ -990,7 +1053,8 @@ impl ObjectKind for Endless {
                 self.pool.stage_patch(staged, config, (*node, *slot), holes)?;
             }
         }
-        self.pool.stage(staged, &self.recipe, holes)
+        let time = self.source.target.as_ref().map_or_else(Morph::default, |(_, time)| *time);
+        self.pool.stage(staged, (&self.recipe, time), holes)
     }
 
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {

@@ -9,9 +9,11 @@ use crate::scene::FRAMES_IN_FLIGHT;
 use crate::shared::render::scene_terrain::TerrainPatch;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::cover::TILES_PERIOD;
+use crate::terrain::features::Features;
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::levels::{GivenHeights, lattice_region};
+use crate::terrain::morph::{HeightMorphPass, Morph, MorphBuffers, MorphJob};
 use crate::terrain::node::{NODE_FACTS, NODE_MARGIN, NodeBuffers, NodeFacts, NodePass, NodeShape};
 use crate::terrain::node_normals::{NodeNormalsBuffers, NodeNormalsPass};
 use crate::terrain::quadtree::Node;
@@ -64,17 +66,43 @@ pub(super) struct Pool {
     scratch: HeightScratch,
     /// Replaces generated heights by those of a map; `None` without a map.
     replace: Option<ReplacePass>,
-    /// The jobs of each level, one for each of a frame's batches of this level: without heights of a map, and with them.
-    jobs: [Vec<Vec<BatchJob>>; 2],
+    /// Blends the heights with those of a target; `None` without a target.
+    blend: Option<Blend>,
+    /// The jobs of each kind and level, one for each of a frame's batches of this level.
+    jobs: [Vec<Vec<BatchJob>>; 3],
     /// The batches of the frame.
     batches: Vec<Batch>,
+}
+
+/// The heights of two recipes, and their blend, which is drawn.
+#[derive(Debug)]
+struct Blend {
+    target: Recipe,
+    generator: RegionPass,
+    scratch: HeightScratch,
+    /// The tiles at time 0 and at time 1.
+    ends: [Buffer<i32>; 2],
+    /// Facts about the tiles at time 1.
+    facts: Buffer<u32>,
+    job: MorphJob,
+    /// Whether the next frame must compute the blend.
+    is_due: bool,
+}
+
+/// What the heights of a batch are made from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Heights {
+    Generated,
+    /// Those of a map, where it has any.
+    Given,
+    /// Those of the target.
+    Target,
 }
 
 /// Nodes of one level that a frame makes, at most [`BATCH`].
 #[derive(Debug, Clone)]
 struct Batch {
-    /// Whether a map gives heights of the nodes.
-    is_given: bool,
+    heights: Heights,
     level: usize,
     /// Number of the job among those of the level.
     job: usize,
@@ -129,8 +157,8 @@ pub(super) struct NewNode {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FoundFacts {
     pub own: NodeFacts,
-    /// The facts of the heights that are generated without the map, where they count.
-    pub generated: Option<NodeFacts>,
+    /// The facts of the heights that are generated without the map, where they count, or of those of the target.
+    pub other: Option<NodeFacts>,
 }
 
 /// The nodes into which a terrain is divided.
@@ -210,19 +238,38 @@ impl Pool {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub fn new(gpu: &Gpu, recipe: &Recipe, grid: Grid, size: PoolSize) -> Result<Self, Error> {
+    pub fn new(
+        gpu: &Gpu,
+        (recipe, target): (&Recipe, Option<&Recipe>),
+        grid: Grid,
+        size: PoolSize,
+    ) -> Result<Self, Error> {
         let (config, PoolSize { capacity, has_holes, has_normals, map }) = (&recipe.config, size);
         let width = (0..=grid.top).map(|level| grid.shape(level).region_width()).max().unwrap_or(0);
         // The largest scratch is that of the widest regions with the most subdivisions.
         let regions = Regions { count: BATCH as u32, width, coarser: 0 };
         let rows = if map.is_some() { 2 * capacity } else { capacity };
         let words = rows * NODE_FACTS as usize;
+        let tiles = |label| Buffer::new(gpu, label, capacity * (grid.shape(0).tile_width() as usize).pow(2));
+        let drawn = tiles("terrain nodes")?;
+        let blend = |target: &Recipe| -> Result<Blend, Error> {
+            let ends = [tiles("terrain nodes at time 0")?, tiles("terrain nodes at time 1")?];
+            let buffers = MorphBuffers { from: &ends[0], to: &ends[1], heights: &drawn };
+            let job = HeightMorphPass::new(gpu)?.prepare(gpu, buffers)?;
+            Ok(Blend {
+                target: target.clone(),
+                generator: RegionPass::new(gpu, &target.config, target.features.injection())?,
+                scratch: HeightScratch::for_regions(gpu, &target.config, regions)?,
+                ends,
+                facts: Buffer::new(gpu, "facts of nodes at time 1", words)?,
+                job,
+                is_due: false,
+            })
+        };
+        let blend = target.map(blend).transpose()?;
+        let read = if blend.is_some() { 2 * words } else { words };
         Ok(Self {
-            tiles: Buffer::new(
-                gpu,
-                "terrain nodes",
-                capacity * (grid.shape(0).tile_width() as usize).pow(2),
-            )?,
+            tiles: drawn,
             patches: Buffer::new(gpu, "patches", capacity)?,
             holes: Buffer::new(
                 gpu,
@@ -230,7 +277,7 @@ impl Pool {
                 if has_holes { capacity * grid.hole_words() } else { 1 },
             )?,
             facts: Buffer::new(gpu, "facts of nodes", words)?,
-            ring: ReadbackRing::new(gpu, "facts of nodes", FRAMES_IN_FLIGHT, 4 * words as u64)?,
+            ring: ReadbackRing::new(gpu, "facts of nodes", FRAMES_IN_FLIGHT, 4 * read as u64)?,
             generator: RegionPass::new(gpu, config, recipe.features.injection())?,
             injection: recipe.features.injection(),
             pass: NodePass::new(gpu)?,
@@ -245,7 +292,8 @@ impl Pool {
             replace: map.map(|_| ReplacePass::new(gpu)).transpose()?,
             size,
             grid,
-            jobs: [(); 2].map(|()| (0..=grid.top).map(|_| Vec::new()).collect()),
+            blend,
+            jobs: [(); 3].map(|()| (0..=grid.top).map(|_| Vec::new()).collect()),
             batches: Vec::new(),
         })
     }
@@ -256,8 +304,10 @@ impl Pool {
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
         let rows = words.as_chunks::<{ NODE_FACTS as usize }>().0;
         let facts = |slot: usize| NodeFacts::from_words(*rows.get(slot)?);
-        let found = (0..self.size.capacity)
-            .map(|slot| Some(FoundFacts { own: facts(slot)?, generated: facts(self.size.capacity + slot) }));
+        let found = (0..self.size.capacity).map(|slot| {
+            let (own, other) = (facts(slot)?, facts(self.size.capacity + slot));
+            (self.blend.is_none() || other.is_some()).then_some(FoundFacts { own, other })
+        });
         Some((frame, found.collect()))
     }
 
@@ -277,52 +327,89 @@ impl Pool {
     pub fn make(&mut self, gpu: &Gpu, recipe: &Recipe, new: &[NewNode]) -> Result<(), Error> {
         self.batches.clear();
         let Recipe { config, features, .. } = recipe;
+        if let Some(blend) = &mut self.blend {
+            blend.is_due |= !new.is_empty();
+        }
         if self.injection != features.injection() {
             self.generator = RegionPass::new(gpu, config, features.injection())?;
             self.injection = features.injection();
             self.jobs.iter_mut().flatten().for_each(Vec::clear);
         }
-        for (level, is_given) in
-            (0..=self.grid.top as usize).flat_map(|level| [(level, false), (level, true)])
+        let kinds = [Heights::Generated, Heights::Given, Heights::Target];
+        for (level, kind) in
+            (0..=self.grid.top as usize).flat_map(|level| kinds.map(|heights| (level, heights)))
         {
-            let (kind, of) = (usize::from(is_given), (level as u32, is_given));
-            let is_own =
-                |new: &&NewNode| new.node.level as usize == level && new.elevation.is_some() == is_given;
+            let is_own = |new: &&NewNode| {
+                let is_of_kind = match kind {
+                    Heights::Generated => new.elevation.is_none(),
+                    Heights::Given => new.elevation.is_some(),
+                    Heights::Target => self.blend.is_some(),
+                };
+                new.node.level as usize == level && is_of_kind
+            };
             let own: Vec<NewNode> = new.iter().filter(is_own).cloned().collect();
             for (job, nodes) in own.chunks(BATCH).enumerate() {
-                if self.jobs[kind][level].len() <= job {
+                let of = (level as u32, kind);
+                if self.jobs[kind as usize][level].len() <= job {
                     let made = self.job(gpu, config, of, 0)?;
-                    self.jobs[kind][level].push(made);
+                    self.jobs[kind as usize][level].push(made);
                 }
                 let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
-                let BatchJob { heights, features: room, .. } = &self.jobs[kind][level][job];
-                let needed = heights.feature_count(&firsts, features);
+                let BatchJob { heights, features: room, .. } = &self.jobs[kind as usize][level][job];
+                let needed = heights.feature_count(&firsts, self.features_of(kind, features));
                 if needed > *room {
-                    self.jobs[kind][level][job] = self.job(gpu, config, of, needed.next_power_of_two())?;
+                    self.jobs[kind as usize][level][job] =
+                        self.job(gpu, config, of, needed.next_power_of_two())?;
                 }
-                self.batches.push(Batch { is_given, level, job, nodes: nodes.to_vec() });
+                self.batches.push(Batch { heights: kind, level, job, nodes: nodes.to_vec() });
             }
         }
         Ok(())
+    }
+
+    /// The injected heights of a batch: those of the target, or `own`.
+    fn features_of<'a>(&'a self, heights: Heights, own: &'a Features) -> &'a Features {
+        match (&self.blend, heights) {
+            (Some(blend), Heights::Target) => &blend.target.features,
+            _ => own,
+        }
+    }
+
+    /// Makes the next frame blend the heights again, at another time.
+    pub fn blend_again(&mut self) {
+        if let Some(blend) = &mut self.blend {
+            blend.is_due = true;
+        }
     }
 
     fn job(
         &self,
         gpu: &Gpu,
         config: &TerrainConfig,
-        (level, is_given): (u32, bool),
+        (level, kind): (u32, Heights),
         features: usize,
     ) -> Result<BatchJob, Error> {
         let shape = self.grid.shape(level);
         let (count, width, coarser) = (BATCH as u32, shape.region_width(), self.grid.coarser(level));
         let regions = Regions { count, width, coarser };
-        let output = HeightBuffers { output: &self.heights, scratch: &self.scratch };
         let slots = Buffer::new(gpu, "slots of nodes", BATCH)?;
+        let (tiles, facts) = match (&self.blend, kind) {
+            (Some(blend), Heights::Target) => (&blend.ends[1], &blend.facts),
+            (Some(blend), _) => (&blend.ends[0], &self.facts),
+            (None, _) => (&self.tiles, &self.facts),
+        };
         let facts_of = |slots: &Buffer<u32>| {
-            let (heights, tiles, facts) = (&self.heights, &self.tiles, &self.facts);
+            let heights = &self.heights;
             self.pass.prepare(gpu, shape, count, NodeBuffers { heights, slots, tiles, facts })
         };
-        let map = self.size.map.zip(self.replace.as_ref()).filter(|_| is_given);
+        if let (Some(Blend { target, generator, scratch, .. }), Heights::Target) = (&self.blend, kind) {
+            let output = HeightBuffers { output: &self.heights, scratch };
+            let heights = generator.prepare_given(gpu, &target.config, regions, features, output, None)?;
+            let nodes = facts_of(&slots)?;
+            return Ok(BatchJob { heights, features, given: None, slots, nodes, normals: None });
+        }
+        let output = HeightBuffers { output: &self.heights, scratch: &self.scratch };
+        let map = self.size.map.zip(self.replace.as_ref()).filter(|_| kind == Heights::Given);
         let map = map.map(|(coarser, pass)| GivenHeights { pass, coarser });
         // A map that is coarser than the regions gives heights of a coarser lattice, from which theirs follow.
         let (lattice, own) =
@@ -354,18 +441,21 @@ impl Pool {
     pub fn stage(
         &self,
         staged: &mut Staged,
-        Recipe { config, features, .. }: &Recipe,
+        (Recipe { config, features, .. }, time): (&Recipe, Morph),
         holes: &[TerrainHole],
     ) -> Result<(), Error> {
-        for Batch { is_given, level, job, nodes } in &self.batches {
-            let job = &self.jobs[usize::from(*is_given)][*level][*job];
+        if let Some(blend) = self.blend.as_ref().filter(|blend| blend.is_due) {
+            blend.job.stage(staged, time)?;
+        }
+        for Batch { heights, level, job, nodes } in &self.batches {
+            let job = &self.jobs[*heights as usize][*level][*job];
             let (mut slots, mut generated) = ([NO_SLOT; BATCH], [NO_SLOT; BATCH]);
             for ((slot, generated), new) in slots.iter_mut().zip(&mut generated).zip(nodes) {
                 (*slot, *generated) = (new.slot, self.size.capacity as u32 + new.slot);
             }
             staged.elements(&job.slots, 0, &slots)?;
             let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
-            job.heights.stage_regions(staged, &firsts, features)?;
+            job.heights.stage_regions(staged, &firsts, self.features_of(*heights, features))?;
             if let Some(given) = &job.given {
                 staged.elements(&given.slots, 0, &generated)?;
             }
@@ -376,9 +466,15 @@ impl Pool {
                     None => job.heights.stage_given(staged, number, heights)?,
                 }
             }
+            let none = [0; NODE_FACTS as usize];
+            if let (Some(blend), Heights::Target) = (&self.blend, heights) {
+                for new in nodes {
+                    staged.elements(&blend.facts, new.slot as usize * NODE_FACTS as usize, &none)?;
+                }
+                continue;
+            }
             for new in nodes {
                 self.stage_patch(staged, config, (new.node, new.slot), holes)?;
-                let none = [0; NODE_FACTS as usize];
                 let own = new.slot as usize;
                 let generated = self.size.map.map(|_| self.size.capacity + own);
                 for row in [Some(own), generated].into_iter().flatten() {
@@ -420,8 +516,8 @@ impl Pool {
 
     /// Records the jobs of the frame; if `reads_facts`, also a copy of all facts to the host.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64, reads_facts: bool) {
-        for Batch { is_given, level, job, .. } in self.batches.drain(..) {
-            let job = &self.jobs[usize::from(is_given)][level][job];
+        for Batch { heights, level, job, .. } in self.batches.drain(..) {
+            let job = &self.jobs[heights as usize][level][job];
             job.heights.record(encoder);
             if let Some(given) = &job.given {
                 given.generated.record(encoder);
@@ -430,10 +526,20 @@ impl Pool {
             job.nodes.record(encoder);
             job.normals.iter().for_each(|normals| normals.record(encoder));
         }
+        if let Some(blend) = &mut self.blend
+            && std::mem::take(&mut blend.is_due)
+        {
+            blend.job.record(encoder);
+        }
         if reads_facts {
-            let facts = &self.facts;
+            let all = [Some(&self.facts), self.blend.as_ref().map(|blend| &blend.facts)];
             self.ring.record(encoder, frame, |encoder, to| {
-                encoder.copy_buffer_to_buffer(facts.raw(), 0, to, 0, facts.bytes());
+                let mut at = 0;
+                for facts in all.into_iter().flatten() {
+                    let bytes = 4 * facts.len() as u64;
+                    encoder.copy_buffer_to_buffer(facts.raw(), 0, to, at, bytes);
+                    at += bytes;
+                }
             });
         }
     }
