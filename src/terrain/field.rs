@@ -1,6 +1,6 @@
 //! Complete height fields on the CPU. The reference implementations of all operations run in the order of a recipe.
 
-use super::{border, despike, height, hydraulic, noise, pad, smooth, thermal, wrap};
+use super::{border, despike, height, hydraulic, limit, noise, pad, smooth, thermal, wrap};
 use crate::InputError;
 use crate::parallel::prelude::*;
 use crate::terrain::border::neighbours;
@@ -8,6 +8,7 @@ use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, Terra
 use crate::terrain::features::Features;
 use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::lattice::Given;
+use crate::terrain::limit::ErosionLimit;
 use crate::terrain::pad::surrounds;
 use crate::terrain::recipe::Recipe;
 use crate::terrain::thermal::Thermal;
@@ -115,6 +116,22 @@ pub(crate) fn region_of(
             heights
         }
     }
+}
+
+/// Heights of a region of `seamless` terrain at its samples' own resolution, after the recipe's erosion, which moves heights by at most
+/// `limit`. The region must be valid with [`Recipe::apron`] samples around it. The recipe must have no despiking.
+pub fn eroded_region(recipe: &Recipe, limit: ErosionLimit, own: Region) -> Vec<i32> {
+    let apron = recipe.apron(0);
+    let around = Region {
+        first: own.first.map(|first| first - i64::from(apron)),
+        width: own.width + 2 * apron,
+        ..own
+    };
+    let window = region(&recipe.config, &recipe.features, around);
+    let mut eroded = finish(recipe, around.width as usize, &[], window);
+    let origins = region(&recipe.config, &recipe.features, own);
+    limit::reference::limit(&origins, &mut eroded, limit.fixed_depth());
+    eroded
 }
 
 /// Despikes and erodes a window. `injected` lists (column, row) of the window's injected points, sorted by row.

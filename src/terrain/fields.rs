@@ -42,6 +42,13 @@ pub(crate) fn places(parts: &[Fields], width: u32) -> Result<Vec<Place>, InputEr
 pub(crate) const REMEDY: &str = "split the batch (fewer patches at once), use smaller patches or a smaller apron (fewer \
     iterations of erosion), or compute on the CPU with the functions in the `reference` modules";
 
+/// Puts the buffer with the result first, after `iterations` iterations that alternate between the two buffers.
+pub(crate) fn after([windows, other]: [Fields; 2], iterations: u32) -> [Fields; 2] {
+    let width = windows.cropped(iterations).width;
+    let [made, rest] = if iterations.is_multiple_of(2) { [windows, other] } else { [other, windows] };
+    [Fields { width, ..made }, Fields { width: width.saturating_sub(2), ..rest }]
+}
+
 impl Fields {
     /// Allocates `count` fields of `width`² heights, all 0.
     ///

@@ -12,7 +12,7 @@ use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::config::Border;
 use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::features::FeatureIndex;
-use crate::terrain::fields::Fields;
+use crate::terrain::fields::{Fields, after};
 use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::hydraulic::HydraulicPass;
 use crate::terrain::pad::{PadPass, Surround, surrounds};
@@ -21,7 +21,6 @@ use crate::terrain::regions::RegionPass;
 use crate::terrain::thermal::ThermalPass;
 use crate::terrain::window::Lattice;
 use crate::terrain::window::{Window, Windows};
-use erosion::after;
 
 /// Generates the fields of patches according to one recipe.
 #[derive(Debug, Clone)]

@@ -25,6 +25,7 @@ pub(crate) mod injection;
 pub(crate) mod lattice;
 #[cfg(feature = "gpu")]
 pub(crate) mod levels;
+pub mod limit;
 #[cfg(feature = "gpu")]
 pub mod materials;
 pub mod mesh;

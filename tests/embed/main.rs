@@ -11,6 +11,7 @@ mod counts;
 mod edited;
 mod elevation;
 mod endless;
+mod endless_erosion;
 mod endless_target;
 mod frame;
 mod geomorph;

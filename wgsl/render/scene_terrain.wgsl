@@ -34,6 +34,8 @@ struct TerrainView {
     camera_count: u32,
     // Factor of the displacement that the cameras allow: the fraction that levels of detail may use.
     fraction: f32,
+    // Allowed displacement in world units at which no erosion is left; 0 for terrain without erosion.
+    erosion_limit: f32,
 }
 
 // How a node of endless terrain is drawn in a view. A limit is an allowed displacement in world units: where the view allows as much,
@@ -86,10 +88,10 @@ struct TerrainParams {
     relief_depth: f32,
     // Distance from the eye in world units from which on textures are flat. The relief fades from half of it on.
     relief_distance: f32,
+    // Largest distance in world units by which erosion moves heights; 0 for terrain without erosion.
+    erosion_depth: f32,
     // Padding, not read.
-    unused_a: f32,
-    // Padding, not read.
-    unused_b: f32,
+    unused: f32,
 }
 
 // A patch of a terrain.
@@ -104,8 +106,8 @@ struct TerrainPatch {
     level: u32,
     // 1 + index of the first word of the patch's holes in `holes`; 0 for a patch without holes.
     holes: u32,
-    // Padding, not read.
-    unused: u32,
+    // Index of the window with the eroded heights; `window` for a patch without.
+    eroded: u32,
 }
 
 // Placement of the terrain in the view.
@@ -130,12 +132,38 @@ struct TerrainPatch {
 // Normals of all nodes but those of level 0, row by row: x in the low half of a word and z in the high half.
 @group(2) @binding(7) var<storage, read> normals: array<u32>;
 
-// Height gradient of a patch at the sample `at`, from samples `reach` apart, as differences over two samples.
+// Height gradient of a window at the sample `center`, from samples `reach` apart, as differences over two samples.
 fn gradient_of(center: u32, reach: u32) -> vec2<f32> {
     let difference = vec2<f32>(vec2<i32>(
         heights[center + reach] - heights[center - reach],
         heights[center + reach * terrain.in_width] - heights[center - reach * terrain.in_width]));
     return difference / f32(reach);
+}
+
+// How much of its erosion a patch shows.
+struct Erosion {
+    // From a sample of the patch's window to the same of its window of eroded heights.
+    offset: u32,
+    // 0: nothing, 1: all of it.
+    weight: f32,
+}
+
+// Height in world units of the sample `at`.
+fn height_at(at: u32, erosion: Erosion) -> f32 {
+    let height = f32(heights[at]) / 65536.0;
+    if erosion.weight > 0.0 {
+        return mix(height, f32(heights[at + erosion.offset]) / 65536.0, erosion.weight);
+    }
+    return height;
+}
+
+// Height gradient of a patch at the sample `center`, as `gradient_of`.
+fn gradient_at(center: u32, reach: u32, erosion: Erosion) -> vec2<f32> {
+    let gradient = gradient_of(center, reach);
+    if erosion.weight > 0.0 {
+        return mix(gradient, gradient_of(center + erosion.offset, reach), erosion.weight);
+    }
+    return gradient;
 }
 
 // Half of the way from an odd vertex of a patch to one of the two even vertices between which it lies in the next coarser level, in
@@ -166,16 +194,21 @@ fn stitched(node: TerrainNode, at: vec2<u32>) -> vec2<u32> {
     return at - back + on;
 }
 
-// How far a vertex of a node has moved onto the triangles of the next coarser level, 0 to 1.
-fn morphed(limit: f32, position: vec3<f32>) -> f32 {
+// The displacement that the cameras allow to a vertex, in world units, wherever erosion has moved it.
+fn allowed_at(position: vec3<f32>) -> f32 {
     var allowed = MAX_ALLOWED;
     for (var index = 0u; index < min(ground.camera_count, 4u); index++) {
-        allowed = min(allowed, camera_allows(ground.cameras[index], position, 0.0));
+        allowed = min(allowed, camera_allows(ground.cameras[index], position, terrain.erosion_depth));
     }
+    return ground.fraction * allowed;
+}
+
+// How far a vertex of a node has moved onto the triangles of the next coarser level, 0 to 1.
+fn morphed(limit: f32, allowed: f32) -> f32 {
     if limit == STITCHED {
         return 1.0;
     }
-    return clamp((ground.fraction * allowed / max(limit, 1e-30) - MORPH_START) / (1.0 - MORPH_START), 0.0, 1.0);
+    return clamp((allowed / max(limit, 1e-30) - MORPH_START) / (1.0 - MORPH_START), 0.0, 1.0);
 }
 
 // 1 if the triangles at a vertex of a patch are left out, else 0.
@@ -204,15 +237,23 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     var gradient = gradient_of(center, 1u);
     var factor = 0.0;
     if is_node {
-        factor = morphed(limit_of(node, at), sample + vec3<f32>(0.0, height, 0.0));
+        let allowed = allowed_at(sample + vec3<f32>(0.0, height, 0.0));
+        var erosion = Erosion(0u, 0.0);
+        if patch_of.eroded != patch_of.window && allowed < ground.erosion_limit {
+            let windows = patch_of.eroded - patch_of.window;
+            erosion = Erosion(windows * terrain.in_width * terrain.in_width, 1.0 - allowed / ground.erosion_limit);
+            height = height_at(center, erosion);
+            gradient = gradient_at(center, 1u, erosion);
+        }
+        factor = morphed(limit_of(node, at), allowed);
         let half = coarser_half(at);
         let one = u32(i32(center) + half.y * i32(terrain.in_width) + half.x);
         let other = u32(i32(center) - half.y * i32(terrain.in_width) - half.x);
-        let coarser = 0.5 * (f32(heights[one]) / 65536.0 + f32(heights[other]) / 65536.0);
+        let coarser = 0.5 * (height_at(one, erosion) + height_at(other, erosion));
         height = mix(height, coarser, factor);
         // With normals of twice the resolution, a vertex has the gradient that the next coarser level has there.
         if terrain.normals_width == 0u {
-            gradient = mix(gradient, 0.5 * (gradient_of(one, 2u) + gradient_of(other, 2u)), factor);
+            gradient = mix(gradient, 0.5 * (gradient_at(one, 2u, erosion) + gradient_at(other, 2u, erosion)), factor);
         }
     }
     var values = vec4<f32>(vec2<f32>(at), factor, height);

@@ -136,6 +136,7 @@ fn terrain(at: &At<'_>) -> Result<TerrainEntry, InputError> {
         "time",
         "endless",
         "view",
+        "erosionDepth",
         "holes",
         "elevation",
         "relief",
@@ -250,10 +251,13 @@ fn elevation(at: &At<'_>) -> Result<ElevationEntry, InputError> {
 fn endless(fields: &Fields<'_>, config: &TerrainConfig) -> Result<Option<EndlessLimits>, InputError> {
     let is_endless = fields.maybe("endless", |at| at.flag())?.unwrap_or(false);
     let view_distance = fields.maybe("view", |at| at.number(1e-3, MOST_VIEW))?;
+    let erosion_depth = fields.maybe("erosionDepth", |at| at.number(1e-3, 1000.0))?;
     if !is_endless {
-        for (name, why) in
-            [("holes", "true, since holes are given"), ("elevation", "true, since an elevation map is given")]
-        {
+        for (name, why) in [
+            ("holes", "true, since holes are given"),
+            ("elevation", "true, since an elevation map is given"),
+            ("erosionDepth", "true, since a depth of erosion is given"),
+        ] {
             if fields.get(name).is_some() {
                 return Err(fields.missing("endless", why));
             }
@@ -273,7 +277,9 @@ fn endless(fields: &Fields<'_>, config: &TerrainConfig) -> Result<Option<Endless
         );
         return Err(at.error(bound));
     }
-    Ok(Some(EndlessLimits { view_distance, ..EndlessLimits::default() }))
+    let usual = EndlessLimits::default();
+    let erosion_depth = erosion_depth.unwrap_or(usual.erosion_depth);
+    Ok(Some(EndlessLimits { view_distance, erosion_depth, ..usual }))
 }
 
 fn terrain_recipe(at: &At<'_>) -> Result<Recipe, InputError> {

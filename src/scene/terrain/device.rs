@@ -114,8 +114,8 @@ fn drawable(
         normals_width: 0,
         relief_depth: source.relief.map_or(0.0, |relief| relief.depth),
         relief_distance: source.relief.map_or(1.0, |relief| relief.distance),
-        unused_a: 0.0,
-        unused_b: 0.0,
+        erosion_depth: 0.0,
+        unused: 0.0,
     };
     let patches = Buffer::new(gpu, "patches", fields.count.max(1) as usize)?;
     if !shown.is_empty() {
@@ -143,7 +143,7 @@ pub(in crate::scene) fn listed(config: &TerrainConfig, patches: &[[i32; 2]]) -> 
         window,
         level: 0,
         holes: 0,
-        unused: 0,
+        eroded: window,
     };
     (0..).zip(patches).map(patch).collect()
 }

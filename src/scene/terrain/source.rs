@@ -93,7 +93,7 @@ impl TerrainSource {
     ///
     /// Views that permit less than 1/16 pixel are drawn as with 1/16, and state no bound.
     ///
-    /// The configuration must be `seamless`. Despiking and erosion are not possible. [`Scene::ground`] and
+    /// The configuration must be `seamless`. Despiking is not possible. [`Scene::ground`] and
     /// [`Scene::pick`] answer for the finest heights everywhere, whatever is drawn; the host makes those patches when it is asked.
     ///
     /// [`Scene::ground`]: crate::scene::Scene::ground

@@ -3,7 +3,7 @@
 use super::Generator;
 use crate::Error;
 use crate::gpu::{Buffer, Gpu};
-use crate::terrain::fields::{Fields, REMEDY};
+use crate::terrain::fields::{Fields, REMEDY, after};
 use crate::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
 use crate::terrain::thermal::{Thermal, ThermalBuffers};
 
@@ -41,11 +41,4 @@ impl Generator {
         job.run_async(gpu).await?;
         Ok(after(both, hydraulic.iterations))
     }
-}
-
-/// Puts the buffer with the result first, after `iterations` iterations that alternate between the two buffers.
-pub(super) fn after([windows, other]: [Fields; 2], iterations: u32) -> [Fields; 2] {
-    let width = windows.cropped(iterations).width;
-    let [made, rest] = if iterations.is_multiple_of(2) { [windows, other] } else { [other, windows] };
-    [Fields { width, ..made }, Fields { width: width.saturating_sub(2), ..rest }]
 }

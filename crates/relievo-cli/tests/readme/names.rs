@@ -133,6 +133,7 @@ fn members() {
     let _ = relievo::scene::TerrainSource::endless; // TerrainSource::endless
     let _ = |limits: relievo::scene::EndlessLimits| limits.node_size; // EndlessLimits::node_size
     let _ = |limits: relievo::scene::EndlessLimits| limits.finer_normals; // EndlessLimits::finer_normals
+    let _ = |limits: relievo::scene::EndlessLimits| limits.erosion_depth; // EndlessLimits::erosion_depth
     let _ = |limits: relievo::scene::EndlessLimits| limits.view_distance; // EndlessLimits::view_distance
     let _ = |limits: relievo::scene::EndlessLimits| limits.capacity; // EndlessLimits::capacity
     let _ = Scene::pick; // Scene::pick

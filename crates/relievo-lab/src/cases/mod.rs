@@ -55,6 +55,7 @@ pub static OPERATIONS: &[Operation] = operations![
     terrain / despike,
     terrain / thermal,
     terrain / hydraulic,
+    terrain / limit,
     terrain / node,
     terrain / node_normals,
     terrain / normals,

@@ -63,8 +63,8 @@ impl Land {
             normals_width: 0,
             relief_depth: 0.0,
             relief_distance: 1.0,
-            unused_a: 0.0,
-            unused_b: 0.0,
+            erosion_depth: 0.0,
+            unused: 0.0,
         };
         let patch = |(window, patch): (u32, [i32; 2])| TerrainPatch {
             origin: patch.map(|at| at * (size as i32 - 1)),
@@ -72,7 +72,7 @@ impl Land {
             window,
             level: 0,
             holes: 0,
-            unused: 0,
+            eroded: window,
         };
         let patches: Vec<_> = (0..).zip(PATCHES).map(patch).collect();
         let indices = patch_indices(size);

@@ -10,8 +10,9 @@ use super::hole::TerrainHole;
 use crate::scene::object_kind::UnitRay;
 use crate::scene::ray::SurfaceHit;
 use crate::terrain::config::TerrainConfig;
-use crate::terrain::field::{region, region_of};
+use crate::terrain::field::{eroded_region, region, region_of};
 use crate::terrain::ground::Ground;
+use crate::terrain::limit::ErosionLimit;
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
 use crate::terrain::morph::reference::morph;
@@ -30,6 +31,7 @@ const KEPT: usize = 1024;
 pub(super) struct FinestGround {
     recipe: Recipe,
     target: Option<(Box<Recipe>, Morph)>,
+    erosion: Option<ErosionLimit>,
     elevation: Option<Elevation>,
     /// The terrain in patches of [`SIZE`] samples.
     patch: TerrainConfig,
@@ -47,13 +49,14 @@ struct Patches {
 impl FinestGround {
     pub fn new(
         recipe: &Recipe,
-        target: Option<(Box<Recipe>, Morph)>,
+        (target, erosion): (Option<(Box<Recipe>, Morph)>, Option<ErosionLimit>),
         elevation: Option<Elevation>,
     ) -> Result<Self, InputError> {
         let patch = TerrainConfig { patch_size: SIZE, ..recipe.config.clone() };
         let patches = Patches { ground: Ground::new(&patch)?, order: VecDeque::new() };
         let edge = patch.edge_length();
-        Ok(Self { recipe: recipe.clone(), target, elevation, patch, edge, patches: Mutex::new(patches) })
+        let (recipe, patches) = (recipe.clone(), Mutex::new(patches));
+        Ok(Self { recipe, target, erosion, elevation, patch, edge, patches })
     }
 
     /// The ground at a world position; `None` beyond the world and in holes.
@@ -139,6 +142,9 @@ impl FinestGround {
     /// The heights of a region; `None` while heights of the elevation map are on their way.
     fn heights(&self, samples: Region) -> Result<Option<Vec<i32>>, InputError> {
         let Recipe { config, features, .. } = &self.recipe;
+        if let Some(limit) = self.erosion {
+            return Ok(Some(eroded_region(&self.recipe, limit, samples)));
+        }
         if let Some((target, time)) = &self.target {
             let [from, to] =
                 [&self.recipe, target].map(|recipe| region(&recipe.config, &recipe.features, samples));
@@ -160,7 +166,13 @@ impl FinestGround {
         if !patches.ground.contains(patch) {
             let first = patch.map(|index| i64::from(index) * (i64::from(SIZE) - 1));
             let samples = Region { first, width: self.patch.patch_size, coarser: 0 };
-            if samples.validate(&self.recipe.config).is_err() {
+            let apron = self.recipe.apron(0);
+            let around = Region {
+                first: first.map(|first| first - i64::from(apron)),
+                width: SIZE + 2 * apron,
+                ..samples
+            };
+            if around.validate(&self.recipe.config).is_err() {
                 return Ok(None);
             }
             let Some(heights) = self.heights(samples)? else { return Ok(None) };

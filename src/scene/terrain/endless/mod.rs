@@ -38,6 +38,7 @@ use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::cover::planes;
 use crate::terrain::features::Features;
 use crate::terrain::injection::{ChangedPoint, FeatureOffsets};
+use crate::terrain::limit::ErosionLimit;
 use crate::terrain::materials::Materials;
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
@@ -94,11 +95,21 @@ pub struct EndlessLimits {
     pub node_size: u32,
     /// Whether nodes are shaded with normals of twice their resolution. Default: true. Terrain with a target has none.
     pub finer_normals: bool,
+    /// Largest distance in world units by which erosion may move a height, above 0 and at most 1000; it has no effect without erosion.
+    /// Default: 4. Nodes within sight of half of it are eroded, so their number grows with its square.
+    pub erosion_depth: f64,
 }
 
 impl Default for EndlessLimits {
     fn default() -> Self {
-        Self { view_distance: None, nodes_per_frame: 32, capacity: 1536, node_size: 65, finer_normals: true }
+        Self {
+            view_distance: None,
+            nodes_per_frame: 32,
+            capacity: 1536,
+            node_size: 65,
+            finer_normals: true,
+            erosion_depth: 4.0,
+        }
     }
 }
 
@@ -253,6 +264,13 @@ pub(in crate::scene) fn made(
         let bound = || "must not be given beside a target";
         InputError::check(elevation.is_none(), "elevation", "given", bound)?;
     }
+    let erosion = (recipe.apron(0) > 0).then_some(ErosionLimit { depth: limits.erosion_depth });
+    if let Some(erosion) = erosion {
+        erosion.validate().map_err(|error| InputError { path: "erosion_depth".to_owned(), ..error })?;
+        let bound = || "must have no erosion beside a target or an elevation map";
+        let is_alone = target.is_none() && elevation.is_none();
+        InputError::check(is_alone, "recipe", "erosion", bound)?;
+    }
     let view_distance = limits.checked(&recipe.config)?;
     let mut instances = Instances::new(limits.capacity as usize);
     let capacity = instances.capacity();
@@ -263,6 +281,7 @@ pub(in crate::scene) fn made(
         has_holes: holes.is_some(),
         has_normals: limits.finer_normals && target.is_none(),
         map: elevation.as_ref().map(Elevation::coarser),
+        erosion,
     };
     let pool = Pool::new(gpu, (recipe, target), grid, size)?;
     let (chunks, draws) = drawn(gpu, layouts, source, (&pool, grid, capacity))?;
@@ -287,7 +306,7 @@ pub(in crate::scene) fn made(
         target_offsets: target.map(|target| FeatureOffsets::new(&target.config, &target.features)),
         are_bounds_changed: false,
         tables: Arc::default(),
-        ground: FinestGround::new(recipe, source.target.clone(), elevation.clone())?,
+        ground: FinestGround::new(recipe, (source.target.clone(), erosion), elevation.clone())?,
         elevation,
         holes,
         are_holes_changed: false,
@@ -328,8 +347,8 @@ fn drawn(
         normals_width: if pool.size.has_normals { grid.shape(0).normals_width() } else { 0 },
         relief_depth: source.relief.map_or(0.0, |relief| relief.depth),
         relief_distance: source.relief.map_or(1.0, |relief| relief.distance),
-        unused_a: 0.0,
-        unused_b: 0.0,
+        erosion_depth: pool.size.erosion.map_or(0.0, |limit| limit.depth as f32),
+        unused: 0.0,
     };
     let geometry = TerrainGeometry {
         params: Uniform::new(gpu, "terrain", &params)?,
@@ -434,10 +453,40 @@ impl Endless {
             (0..parts * parts).all(|at| {
                 let at = DVec3::new(f64::from(at % parts), 0.0, f64::from(at / parts));
                 let center = (low + at * part + half).as_vec3();
+                let radius = radius + self.depth();
                 view.cameras().iter().all(|camera| error <= fraction * allowed_around(camera, center, radius))
             })
         };
         !allows(1) && !allows(PARTS)
+    }
+
+    /// The largest distance in world units by which erosion moves heights.
+    fn depth(&self) -> f32 {
+        self.size.erosion.map_or(0.0, |limit| limit.depth as f32)
+    }
+
+    /// The allowed displacement at which a view shows no erosion: twice the depth, if all nodes are eroded that need it. Other nodes are
+    /// drawn as they are without erosion, so it must have faded there.
+    fn erosion_limit(&self, view: &SelectView, fraction: f32, cover: &Cover) -> f32 {
+        let mut limit = 2.0 * self.depth();
+        if limit == 0.0 {
+            return 0.0;
+        }
+        let plain = cover.leaves.iter().filter(|leaf| !self.grid.is_eroded(self.size, leaf.node.level));
+        for leaf in plain {
+            let [low, high] = self.node_box(leaf.node).map(|at| at - Placement::corner(view.cell.into()));
+            let half = 0.5 * (high - low) / DVec3::new(PARTS.into(), 1.0, PARTS.into());
+            let radius = (1.000_01 * half.length()) as f32 + self.depth();
+            for at in 0..PARTS * PARTS {
+                let at = DVec3::new(f64::from(2 * (at % PARTS) + 1), 1.0, f64::from(2 * (at / PARTS) + 1));
+                let center = (low + at * half).as_vec3();
+                let seen = view.cameras().iter().filter(|camera| sees(camera, center, radius));
+                let allowed = seen.map(|camera| fraction * camera.allows(center, radius));
+                limit = allowed.fold(limit, f32::min);
+            }
+        }
+        // Slightly less, to allow for rounding.
+        0.999 * limit
     }
 
     /// The error of a node because of holes, which only the finest nodes have: the width of the widest hole that is missing.
@@ -469,7 +518,9 @@ impl Endless {
         let mut known = Vec::new();
         for (node, resident) in &mut self.residents {
             if resident.found.is_none() && resident.made <= frame {
-                resident.found = facts.get(resident.slot as usize).copied().flatten();
+                let needs_both = self.grid.is_eroded(self.size, node.level);
+                let found = facts.get(resident.slot as usize).copied().flatten();
+                resident.found = found.filter(|found| !needs_both || found.other.is_some());
                 known.extend(resident.found.map(|_| *node));
             }
         }
@@ -486,11 +537,16 @@ impl Endless {
             let (region, beyond) = (grid.region_of(*node), resident.beyond);
             let facts = resident.found.map(|found| {
                 let injected = self.offsets.bound(config, region);
+                let [own, other] = [Some(found.own), found.other]
+                    .map(|facts| FoundFacts { own: facts.unwrap_or(found.own), other: None });
+                if let Some(limit) = self.size.erosion {
+                    let own = facts_of(config, grid, node.level, (&own, beyond), injected);
+                    let eroded = facts_of(config, grid, node.level, (&other, beyond), injected);
+                    return own.eroded(eroded, limit.depth, grid.is_eroded(self.size, node.level));
+                }
                 let Some(((target, _), offsets)) = target else {
                     return facts_of(config, grid, node.level, (&found, beyond), injected);
                 };
-                let [own, other] = [Some(found.own), found.other]
-                    .map(|facts| FoundFacts { own: facts.unwrap_or(found.own), other: None });
                 let own = facts_of(config, grid, node.level, (&own, beyond), injected);
                 let injected = offsets.bound(&target.config, region);
                 own.blended(facts_of(&target.config, grid, node.level, (&other, beyond), injected))
@@ -511,9 +567,20 @@ impl Endless {
         let offsets = FeatureOffsets::new(&recipe.config, features);
         let changed = self.offsets.changed(&offsets);
         (self.recipe, self.offsets) = (recipe, offsets);
-        self.ground = FinestGround::new(&self.recipe, self.source.target.clone(), self.elevation.clone())?;
+        let also = (self.source.target.clone(), self.size.erosion);
+        self.ground = FinestGround::new(&self.recipe, also, self.elevation.clone())?;
+        let apron = self.recipe.apron(0);
         let is_changed = |node: &Node| {
-            let region = self.grid.region_of(*node);
+            let own = self.grid.region_of(*node);
+            // Erosion carries a change as far as its iterations reach.
+            let region = match self.grid.is_eroded(self.size, node.level) {
+                true => Region {
+                    first: own.first.map(|first| first - i64::from(apron)),
+                    width: own.width + 2 * apron,
+                    ..own
+                },
+                false => own,
+            };
             changed.iter().any(|point| point.changes(region))
         };
         let stale: Vec<Node> = self.residents.keys().filter(|node| is_changed(node)).copied().collect();
@@ -552,7 +619,7 @@ impl Endless {
         let Some((_, current)) = &mut self.source.target else { return Err(super::without_target()) };
         if *current != morph {
             *current = morph;
-            self.ground = FinestGround::new(&self.recipe, self.source.target.clone(), None)?;
+            self.ground = FinestGround::new(&self.recipe, (self.source.target.clone(), None), None)?;
             self.pool.blend_again();
         }
         Ok(())
@@ -702,7 +769,9 @@ impl Endless {
                 TerrainNode { borders: sides.each_ref().map(border), inner: own, ..nobody };
             shown[slot as usize / 32] |= 1 << (slot % 32);
         }
-        ViewTable { nodes, shown, cameras: view.cameras, camera_count: view.camera_count, fraction }
+        let erosion_limit = self.erosion_limit(view, fraction, cover);
+        let SelectView { cameras, camera_count, .. } = *view;
+        ViewTable { nodes, shown, cameras, camera_count, fraction, erosion_limit }
     }
 
     /// Chooses what the views of a frame draw, and what the frame makes. Returns the instances that are placed anew.
@@ -916,22 +985,26 @@ fn check_holes(holes: &[TerrainHole]) -> Result<(), InputError> {
     holes.iter().enumerate().try_for_each(below)
 }
 
-/// The displacement that a camera allows to a sphere if it turns towards it. Spheres that it does not see as it is may be
-/// [`OUTSIDE`] times coarser.
-fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
+/// Whether a camera may see a part of a sphere.
+fn sees(camera: &LodCamera, center: Vec3, radius: f32) -> bool {
     let towards = center - camera.eye;
     let distance = towards.length();
     if camera.perspective == 0.0 || distance <= radius {
-        return camera.allows(center, radius);
+        return true;
     }
     // The picture lies in a cone around the axis: its diagonal is at most 2.1 times the root of the number of its pixels, as long as
     // its sides are at most 4 : 1.
     let half_angle = (1.05 * camera.pixel_count.sqrt() / camera.focal).atan();
-    let aside = camera.ahead.angle_between(towards) - (radius / distance).asin();
-    if aside <= half_angle {
+    camera.ahead.angle_between(towards) - (radius / distance).asin() <= half_angle
+}
+
+/// The displacement that a camera allows to a sphere if it turns towards it. Spheres that it does not see as it is may be
+/// [`OUTSIDE`] times coarser.
+fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
+    if sees(camera, center, radius) {
         return camera.allows(center, radius);
     }
-    OUTSIDE * LodCamera { ahead: towards / distance, ..*camera }.allows(center, radius)
+    OUTSIDE * LodCamera { ahead: (center - camera.eye).normalize(), ..*camera }.allows(center, radius)
 }
 
 /// The facts of a node of a level, from what the device found and what lies below. `injected` bounds what finer injected heights
@@ -975,6 +1048,15 @@ impl Facts {
             heights: [low.min(other_low) - rounding, high.max(other_high) + rounding],
             error: (self.error.max(other.error) + rounding as f32).next_up(),
         }
+    }
+
+    /// The facts of a node whose heights lie between these and eroded ones, at most `depth` away. Erosion takes half of what a view
+    /// allows: it is shown in full but for as much, so the node's own error may take the other half. Nodes that are not eroded
+    /// are drawn where a view allows twice the depth.
+    fn eroded(self, eroded: Self, depth: f64, is_eroded: bool) -> Self {
+        let [low, high] = self.heights;
+        let error = self.error.max(if is_eroded { eroded.error } else { depth as f32 });
+        Self { heights: [low - depth, high + depth], error: 2.0 * error }
     }
 }
 

@@ -10,9 +10,13 @@ use crate::shared::render::scene_terrain::TerrainPatch;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::cover::TILES_PERIOD;
 use crate::terrain::features::Features;
+use crate::terrain::fields::{Fields, after};
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::{HeightBuffers, HeightScratch};
+use crate::terrain::hydraulic::reference::Flow;
+use crate::terrain::hydraulic::{HydraulicBuffers, HydraulicPass};
 use crate::terrain::levels::{GivenHeights, lattice_region};
+use crate::terrain::limit::{ErosionLimit, LimitBuffers, LimitPass};
 use crate::terrain::morph::{HeightMorphPass, Morph, MorphBuffers, MorphJob};
 use crate::terrain::node::{NODE_FACTS, NODE_MARGIN, NodeBuffers, NodeFacts, NodePass, NodeShape};
 use crate::terrain::node_normals::{NodeNormalsBuffers, NodeNormalsPass};
@@ -21,6 +25,7 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::regions::{RegionJob, RegionPass};
 use crate::terrain::remainder::remainder_reach;
 use crate::terrain::replace::{ReplaceBuffers, ReplacePass};
+use crate::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 use crate::terrain::window::{Region, Regions};
 use crate::{Error, InputError};
 
@@ -37,6 +42,9 @@ const MOST_FINER_WITH_MAP: u32 = 2;
 
 /// Largest number of cells along an edge of a node's finer heights, unless the node itself has more.
 const MOST_CELLS: u32 = 512;
+
+/// Largest number of iterations of erosion: each needs another sample around a node's.
+const MOST_ITERATIONS: u32 = 128;
 
 /// A slot that no batch writes.
 const NO_SLOT: u32 = u32::MAX;
@@ -68,6 +76,8 @@ pub(super) struct Pool {
     replace: Option<ReplacePass>,
     /// Blends the heights with those of a target; `None` without a target.
     blend: Option<Blend>,
+    /// Erodes the finest nodes; `None` without erosion.
+    erosion: Option<Erosion>,
     /// The jobs of each kind and level, one for each of a frame's batches of this level.
     jobs: [Vec<Vec<BatchJob>>; 3],
     /// The batches of the frame.
@@ -87,6 +97,21 @@ struct Blend {
     job: MorphJob,
     /// Whether the next frame must compute the blend.
     is_due: bool,
+}
+
+/// Erodes nodes: those of the levels that are made from heights of the terrain's own resolution.
+#[derive(Debug)]
+struct Erosion {
+    recipe: Recipe,
+    limit: ErosionLimit,
+    thermal: ThermalPass,
+    /// `None` for recipes without hydraulic erosion, for which this pipeline is not compiled.
+    hydraulic: Option<HydraulicPass>,
+    limiting: LimitPass,
+    /// Regions with the samples around them that erosion needs. Its iterations alternate between both.
+    windows: [Buffer<i32>; 2],
+    /// Water and sediment, if there is hydraulic erosion.
+    flows: [Buffer<Flow>; 2],
 }
 
 /// What the heights of a batch are made from.
@@ -119,6 +144,8 @@ pub(super) struct PoolSize {
     pub has_normals: bool,
     /// Number of levels by which the elevation map is coarser than the terrain; `None` without a map.
     pub map: Option<u32>,
+    /// The limit of erosion; `None` without erosion.
+    pub erosion: Option<ErosionLimit>,
 }
 
 /// The jobs that make up to [`BATCH`] nodes of one level.
@@ -130,7 +157,21 @@ struct BatchJob {
     given: Option<GivenJob>,
     slots: Buffer<u32>,
     nodes: Job,
+    erosion: Option<ErosionJob>,
     normals: Option<Job>,
+}
+
+/// Makes the eroded tiles of nodes, whose heights before erosion are there.
+#[derive(Debug)]
+struct ErosionJob {
+    /// Generates the regions with the samples around them.
+    around: RegionJob,
+    /// Erosion, its limit, and the tiles.
+    steps: Vec<Job>,
+    /// Slots of the eroded tiles and of their facts.
+    slots: Buffer<u32>,
+    /// The eroded heights.
+    heights: Buffer<i32>,
 }
 
 /// Replaces heights of regions by those of a map, on the regions' own lattice.
@@ -157,7 +198,7 @@ pub(super) struct NewNode {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FoundFacts {
     pub own: NodeFacts,
-    /// The facts of the heights that are generated without the map, where they count, or of those of the target.
+    /// The facts of the heights that are generated without the map, where they count, of those of the target, or of the eroded ones.
     pub other: Option<NodeFacts>,
 }
 
@@ -227,9 +268,29 @@ impl Grid {
         (self.cells as usize + 1).pow(2).div_ceil(32)
     }
 
+    /// Whether nodes of a level are eroded: those that are made from heights of the terrain's own resolution.
+    pub fn is_eroded(self, size: PoolSize, level: u32) -> bool {
+        size.erosion.is_some() && self.coarser(level) == 0
+    }
+
     /// Number of levels by which the finer heights of a node of a level are coarser than the terrain.
     pub fn coarser(self, level: u32) -> u32 {
         level - self.shape(level).finer
+    }
+}
+
+impl Erosion {
+    /// The first samples of regions with the samples around them that erosion needs.
+    fn firsts_around(&self, firsts: &[[i64; 2]]) -> Vec<[i64; 2]> {
+        let apron = i64::from(self.recipe.apron(0));
+        firsts.iter().map(|first| first.map(|at| at - apron)).collect()
+    }
+}
+
+impl PoolSize {
+    /// Whether there are facts about the heights without a map, or about eroded heights.
+    fn has_others(&self) -> bool {
+        self.map.is_some() || self.erosion.is_some()
     }
 }
 
@@ -244,13 +305,14 @@ impl Pool {
         grid: Grid,
         size: PoolSize,
     ) -> Result<Self, Error> {
-        let (config, PoolSize { capacity, has_holes, has_normals, map }) = (&recipe.config, size);
+        let (config, PoolSize { capacity, has_holes, has_normals, map, .. }) = (&recipe.config, size);
         let width = (0..=grid.top).map(|level| grid.shape(level).region_width()).max().unwrap_or(0);
         // The largest scratch is that of the widest regions with the most subdivisions.
-        let regions = Regions { count: BATCH as u32, width, coarser: 0 };
-        let rows = if map.is_some() { 2 * capacity } else { capacity };
+        let regions = Regions { count: BATCH as u32, width: width + 2 * recipe.apron(0), coarser: 0 };
+        let rows = if size.has_others() { 2 * capacity } else { capacity };
         let words = rows * NODE_FACTS as usize;
-        let tiles = |label| Buffer::new(gpu, label, capacity * (grid.shape(0).tile_width() as usize).pow(2));
+        let most = if size.erosion.is_some() { 2 * capacity } else { capacity };
+        let tiles = |label| Buffer::new(gpu, label, most * (grid.shape(0).tile_width() as usize).pow(2));
         let drawn = tiles("terrain nodes")?;
         let blend = |target: &Recipe| -> Result<Blend, Error> {
             let ends = [tiles("terrain nodes at time 0")?, tiles("terrain nodes at time 1")?];
@@ -268,6 +330,26 @@ impl Pool {
         };
         let blend = target.map(blend).transpose()?;
         let read = if blend.is_some() { 2 * words } else { words };
+        let erosion = |limit: ErosionLimit| -> Result<Erosion, Error> {
+            let points = BATCH * (regions.width as usize).pow(2);
+            let flows = if recipe.hydraulic.is_some() { points } else { 1 };
+            Ok(Erosion {
+                recipe: recipe.clone(),
+                limit,
+                thermal: ThermalPass::new(gpu)?,
+                hydraulic: recipe.hydraulic.map(|_| HydraulicPass::new(gpu)).transpose()?,
+                limiting: LimitPass::new(gpu)?,
+                windows: [
+                    Buffer::new(gpu, "regions to erode", points)?,
+                    Buffer::new(gpu, "regions to erode, in turn", points)?,
+                ],
+                flows: [
+                    Buffer::new(gpu, "water and sediment", flows)?,
+                    Buffer::new(gpu, "water and sediment, in turn", flows)?,
+                ],
+            })
+        };
+        let erosion = size.erosion.map(erosion).transpose()?;
         Ok(Self {
             tiles: drawn,
             patches: Buffer::new(gpu, "patches", capacity)?,
@@ -293,6 +375,7 @@ impl Pool {
             size,
             grid,
             blend,
+            erosion,
             jobs: [(); 3].map(|()| (0..=grid.top).map(|_| Vec::new()).collect()),
             batches: Vec::new(),
         })
@@ -356,7 +439,12 @@ impl Pool {
                 }
                 let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
                 let BatchJob { heights, features: room, .. } = &self.jobs[kind as usize][level][job];
-                let needed = heights.feature_count(&firsts, self.features_of(kind, features));
+                let features = self.features_of(kind, features);
+                let around = self.jobs[kind as usize][level][job].erosion.as_ref().zip(self.erosion.as_ref());
+                let around = around.map_or(0, |(job, erosion)| {
+                    job.around.feature_count(&erosion.firsts_around(&firsts), features)
+                });
+                let needed = heights.feature_count(&firsts, features).max(around);
                 if needed > *room {
                     self.jobs[kind as usize][level][job] =
                         self.job(gpu, config, of, needed.next_power_of_two())?;
@@ -406,7 +494,8 @@ impl Pool {
             let output = HeightBuffers { output: &self.heights, scratch };
             let heights = generator.prepare_given(gpu, &target.config, regions, features, output, None)?;
             let nodes = facts_of(&slots)?;
-            return Ok(BatchJob { heights, features, given: None, slots, nodes, normals: None });
+            let (given, erosion, normals) = (None, None, None);
+            return Ok(BatchJob { heights, features, given, slots, nodes, erosion, normals });
         }
         let output = HeightBuffers { output: &self.heights, scratch: &self.scratch };
         let map = self.size.map.zip(self.replace.as_ref()).filter(|_| kind == Heights::Given);
@@ -424,14 +513,66 @@ impl Pool {
         };
         let given = own.map(given).transpose()?;
         let nodes = facts_of(&slots)?;
+        let erosion = self.erosion.as_ref().filter(|_| coarser == 0);
+        let erosion = erosion.map(|erosion| self.erosion_job(gpu, config, (erosion, shape), features));
+        let erosion = erosion.transpose()?;
         let normals = |pass: &NodeNormalsPass| {
-            let buffers =
-                NodeNormalsBuffers { heights: &self.heights, slots: &slots, normals: &self.normals };
+            let heights = erosion.as_ref().map_or(&self.heights, |job| &job.heights);
+            let buffers = NodeNormalsBuffers { heights, slots: &slots, normals: &self.normals };
             let spacing = config.terrain_scale * f64::from(1_u32 << coarser);
             pass.prepare(gpu, (shape, spacing), count, buffers)
         };
         let normals = self.normals_pass.as_ref().filter(|_| shape.finer > 0).map(normals).transpose()?;
-        Ok(BatchJob { heights, features, given, slots, nodes, normals })
+        Ok(BatchJob { heights, features, given, slots, nodes, erosion, normals })
+    }
+
+    /// The job that makes the eroded tiles of nodes, whose heights before erosion are in `self.heights`.
+    fn erosion_job(
+        &self,
+        gpu: &Gpu,
+        config: &TerrainConfig,
+        (erosion, shape): (&Erosion, NodeShape),
+        features: usize,
+    ) -> Result<ErosionJob, Error> {
+        let Erosion { recipe, limit, windows, flows, .. } = erosion;
+        let (count, width, scale) = (BATCH as u32, shape.region_width(), config.terrain_scale);
+        let wide = width + 2 * recipe.apron(0);
+        let regions = Regions { count, width: wide, coarser: 0 };
+        let output = HeightBuffers { output: &windows[0], scratch: &self.scratch };
+        let around = self.generator.prepare_regions(gpu, config, regions, features, output)?;
+        let mut both =
+            windows.each_ref().map(|heights| Fields { heights: heights.clone(), width: wide, count });
+        both[1].width -= 2;
+        let mut steps = Vec::new();
+        let thermal =
+            |thermal: Option<Thermal>, both: &mut [Fields; 2], steps: &mut Vec<Job>| -> Result<(), Error> {
+                let Some(thermal) = thermal.filter(|thermal| thermal.iterations > 0) else { return Ok(()) };
+                let buffers = ThermalBuffers { windows: &both[0], other: &both[1] };
+                steps.push(erosion.thermal.prepare(gpu, thermal, scale, buffers)?);
+                *both = after(both.clone(), thermal.iterations);
+                Ok(())
+            };
+        thermal(recipe.thermal, &mut both, &mut steps)?;
+        if let (Some(pass), Some(hydraulic)) = (&erosion.hydraulic, recipe.hydraulic) {
+            let buffers = HydraulicBuffers {
+                windows: &both[0],
+                other: &both[1],
+                flows: &flows[0],
+                other_flows: &flows[1],
+            };
+            steps.push(pass.prepare(gpu, hydraulic, scale, buffers)?);
+            both = after(both, hydraulic.iterations);
+        }
+        thermal(recipe.thermal_after, &mut both, &mut steps)?;
+        let [Fields { heights, .. }, _] = both;
+        let points = BATCH * (width as usize).pow(2);
+        let buffers = LimitBuffers { origins: &self.heights, heights: &heights };
+        steps.push(erosion.limiting.prepare(gpu, *limit, points, buffers)?);
+        let slots = Buffer::new(gpu, "slots of eroded nodes", BATCH)?;
+        let buffers =
+            NodeBuffers { heights: &heights, slots: &slots, tiles: &self.tiles, facts: &self.facts };
+        steps.push(self.pass.prepare(gpu, shape, count, buffers)?);
+        Ok(ErosionJob { around, steps, slots, heights })
     }
 
     /// Stages what the jobs of the frame read, and the patches of new nodes.
@@ -459,6 +600,10 @@ impl Pool {
             if let Some(given) = &job.given {
                 staged.elements(&given.slots, 0, &generated)?;
             }
+            if let (Some(job), Some(erosion)) = (&job.erosion, &self.erosion) {
+                staged.elements(&job.slots, 0, &generated)?;
+                job.around.stage_regions(staged, &erosion.firsts_around(&firsts), features)?;
+            }
             for (number, new) in nodes.iter().enumerate() {
                 let Some(NodeElevation { heights, .. }) = &new.elevation else { continue };
                 match &job.given {
@@ -476,7 +621,7 @@ impl Pool {
             for new in nodes {
                 self.stage_patch(staged, config, (new.node, new.slot), holes)?;
                 let own = new.slot as usize;
-                let generated = self.size.map.map(|_| self.size.capacity + own);
+                let generated = self.size.has_others().then_some(self.size.capacity + own);
                 for row in [Some(own), generated].into_iter().flatten() {
                     staged.elements(&self.facts, row * NODE_FACTS as usize, &none)?;
                 }
@@ -506,6 +651,9 @@ impl Pool {
         holes: &[TerrainHole],
     ) -> Result<(), Error> {
         let mut patch = patch_of(config, self.grid, (node, slot));
+        if self.grid.is_eroded(self.size, node.level) {
+            patch.eroded = self.size.capacity as u32 + slot;
+        }
         if let Some(words) = hole_bits(config, self.grid, node, holes) {
             let first = slot as usize * words.len();
             staged.elements(&self.holes, first, &words)?;
@@ -524,6 +672,10 @@ impl Pool {
                 given.replace.record(encoder);
             }
             job.nodes.record(encoder);
+            if let Some(erosion) = &job.erosion {
+                erosion.around.record(encoder);
+                erosion.steps.iter().for_each(|step| step.record(encoder));
+            }
             job.normals.iter().for_each(|normals| normals.record(encoder));
         }
         if let Some(blend) = &mut self.blend
@@ -555,7 +707,7 @@ fn patch_of(config: &TerrainConfig, grid: Grid, (node, slot): (Node, u32)) -> Te
         window: slot,
         level: node.level,
         holes: 0,
-        unused: 0,
+        eroded: slot,
     }
 }
 
@@ -597,8 +749,12 @@ pub(super) fn check(recipe: &Recipe, grid: Grid) -> Result<(), InputError> {
         let bound = "must be at most 129 where interpolation is smooth";
         return Err(InputError::new("node_size", grid.cells + 1, bound));
     }
-    if recipe.apron(0) > 0 {
-        return refused("recipe", "must have no despiking and no erosion where terrain is endless");
+    if recipe.despike.is_some() {
+        return refused("recipe", "must have no despiking where terrain is endless");
+    }
+    if recipe.apron(0) > MOST_ITERATIONS {
+        let bound = format!("must be at most {MOST_ITERATIONS} together where terrain is endless");
+        return Err(InputError::new("iterations", recipe.apron(0), bound));
     }
     Ok(())
 }

@@ -6,6 +6,7 @@ pub mod despike;
 pub mod height;
 pub mod hydraulic;
 mod levels;
+pub mod limit;
 pub mod morph;
 pub mod node;
 pub mod node_normals;

@@ -1,0 +1,33 @@
+//! A limit of the distance between eroded heights and the heights before erosion.
+
+use crate::InputError;
+use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, finite};
+
+#[cfg(feature = "gpu")]
+mod pass;
+pub mod reference;
+
+#[cfg(feature = "gpu")]
+pub use pass::{LimitBuffers, LimitPass};
+
+/// How far erosion may move heights. What it would move farther stays at this distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErosionLimit {
+    /// Largest distance in height units: above 0, at most 1000.
+    pub depth: f64,
+}
+
+impl ErosionLimit {
+    /// Checks the depth.
+    ///
+    /// # Errors
+    /// [`InputError`] that names `depth`.
+    pub fn validate(&self) -> Result<(), InputError> {
+        finite("depth", self.depth, 1.0 / HEIGHT_ONE, 1000.0)
+    }
+
+    /// The depth in 1/65536 height units.
+    pub fn fixed_depth(&self) -> i32 {
+        (self.depth * HEIGHT_ONE).round_ties_even().min(HEIGHT_LIMIT as f64) as i32
+    }
+}

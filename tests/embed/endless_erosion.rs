@@ -1,0 +1,210 @@
+//! Endless terrain whose ground is eroded near the views.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+use relievo::ops::terrain::field::field;
+use relievo::ops::terrain::hydraulic::Hydraulic;
+use relievo::ops::terrain::thermal::Thermal;
+use relievo::scene::{
+    Camera, EndlessLimits, Scene, TerrainConfig, TerrainMorph, TerrainRecipe, TerrainSource,
+};
+
+use crate::endless::{Path, ROUNDING, World, between, flight, holes, largest, offsets, picture, some};
+use crate::harness::{Difference, gpu};
+
+/// Steep mountains.
+fn config() -> TerrainConfig {
+    TerrainConfig { scale_factor: 600.0, ..crate::endless::config() }
+}
+
+/// The most that erosion may move a height, in world units.
+const DEPTH: f64 = 1.5;
+
+/// Slopes of more than 20° slide, and rain digs.
+fn recipe() -> TerrainRecipe {
+    let thermal = Some(Thermal { iterations: 12, talus: 8.0 });
+    let hydraulic = Some(Hydraulic { iterations: 5, ..Hydraulic::default() });
+    TerrainRecipe { thermal, hydraulic, ..TerrainRecipe::new(config()) }
+}
+
+fn source(recipe: TerrainRecipe) -> TerrainSource {
+    let limits = EndlessLimits { nodes_per_frame: 64, erosion_depth: DEPTH, ..EndlessLimits::default() };
+    TerrainSource::from(recipe).with_limits(limits)
+}
+
+/// The finest heights, eroded patch by patch, and the patches that are known.
+struct Truth {
+    recipes: [TerrainRecipe; 2],
+    patches: Mutex<HashMap<[i32; 2], Arc<Vec<i32>>>>,
+}
+
+impl Truth {
+    fn new() -> Self {
+        Self { recipes: [TerrainRecipe::new(config()), recipe()], patches: Mutex::default() }
+    }
+
+    fn patch(&self, patch: [i32; 2]) -> Arc<Vec<i32>> {
+        if let Some(known) = self.patches.lock().expect("whole").get(&patch) {
+            return known.clone();
+        }
+        let [plain, eroded] =
+            self.recipes.each_ref().map(|recipe| field(recipe, &[patch], 0).expect("valid").remove(0));
+        let most = (DEPTH * 65_536.0) as i32;
+        let limited = |(plain, eroded): (i32, i32)| plain + (eroded - plain).clamp(-most, most);
+        let heights = Arc::new(plain.into_iter().zip(eroded).map(limited).collect::<Vec<_>>());
+        self.patches.lock().expect("whole").insert(patch, heights.clone());
+        heights
+    }
+
+    fn at(&self, x: f64, z: f64) -> f64 {
+        between(&self.recipes[0].config, [x, z], |region| {
+            let sample = |dx: i64, dz: i64| {
+                let [column, row] = [region.first[0] + dx, region.first[1] + dz];
+                let patch = [column, row].map(|at| at.div_euclid(64) as i32);
+                let [column, row] = [column, row].map(|at| at.rem_euclid(64) as usize);
+                self.patch(patch)[row * 65 + column]
+            };
+            vec![sample(0, 0), sample(1, 0), sample(0, 1), sample(1, 1)]
+        })
+    }
+}
+
+/// Near and far, what is drawn is within a pixel of the eroded ground, which is not the ground without erosion.
+#[test]
+fn what_is_drawn_is_within_a_pixel_of_the_eroded_ground() {
+    let truth = Truth::new();
+    let mut world = World::of(&source(recipe()), [160, 90]);
+    let mut plain = World::of(&source(TerrainRecipe::new(config())), [160, 90]);
+    for (at, height, apart) in
+        [([10.0, 20.0], 2.0, 5.0), ([-3_000.5, 700.0], 60.0, 0.25), ([9.0e6, -9.5e6], 150.0, 0.0)]
+    {
+        let camera = world.above(at, height);
+        world.view.set(camera).expect("valid");
+        let frames = world.settle();
+        let drawn = world.positions(&camera);
+        assert_eq!(holes(&world, &camera, &drawn), 0, "{height} above");
+        let some = some(&drawn, 7);
+        let most = largest(&offsets(&|x, z| truth.at(x, z), &camera, &some));
+        let nodes = world.scene.terrain_statistics(world.land).expect("endless");
+        plain.view.set(camera).expect("valid");
+        plain.settle();
+        let without = plain.positions(&camera);
+        let without = largest(&offsets(&|x, z| truth.at(x, z), &camera, &crate::endless::some(&without, 7)));
+        println!("{height} above: {frames} frames, {most} px off, {without} without erosion; {nodes:?}");
+        assert!(most <= 1.0 + ROUNDING && most > 0.05, "{most}");
+        assert!(without > apart, "{without}");
+    }
+}
+
+#[test]
+fn a_flight_over_eroded_ground_has_no_holes_and_keeps_its_promise() {
+    let truth = Truth::new();
+    let mut world = World::of(&source(recipe()), [160, 90]);
+    let path = Path { from: [1.0e6, 40.0], frames: 24, metres: 300.0, height: 120.0, every: 6, step: 7 };
+    let flight = flight(&mut world, &|x, z| truth.at(x, z), &path);
+    println!("{flight:?}");
+    assert_eq!(flight.holes, 0);
+    assert!(flight.ready[0] <= 1.0 + ROUNDING && flight.ready[1] <= 1.0 + ROUNDING, "{flight:?}");
+    assert!(flight.ready_frames >= 8 && flight.made > 20, "{flight:?}");
+}
+
+/// The ground of the host is the eroded one, and rays hit it.
+#[test]
+fn the_ground_of_the_host_is_eroded() {
+    let truth = Truth::new();
+    let world = World::of(&source(recipe()), [64, 36]);
+    let mut moved = 0;
+    for at in 0..200 {
+        let (x, z) = (37.3 * f64::from(at) + 0.25, 40.0 - 11.7 * f64::from(at));
+        let point = world.scene.ground(world.land, x, z).expect("valid").expect("ground");
+        assert!((point.height - truth.at(x, z)).abs() < 1e-6, "{x} {z}: {}", point.height);
+        moved += usize::from((point.height - field_height(x, z)).abs() > 0.1);
+    }
+    assert!(moved > 20, "{moved} of 200 places are eroded");
+}
+
+/// The height without erosion.
+fn field_height(x: f64, z: f64) -> f64 {
+    let config = config();
+    between(&config, [x, z], |region| {
+        relievo::ops::terrain::field::region(&config, &Default::default(), region)
+    })
+}
+
+/// While nodes are missing, some are eroded and others beside them are not, and yet the ground is closed: below it there is no sky.
+#[test]
+fn eroded_ground_is_closed_while_nodes_are_missing() {
+    let limits = EndlessLimits { nodes_per_frame: 16, erosion_depth: 6.0, ..EndlessLimits::default() };
+    let thermal = Some(Thermal { iterations: 40, talus: 1.0 });
+    let recipe = TerrainRecipe { thermal, ..TerrainRecipe::new(config()) };
+    let size = [320, 180];
+    let mut world = World::of(&source(recipe).with_limits(limits), size);
+    let (mut unready, mut eroded, at) = (0, 0, [40.0, -700.0]);
+    let ground = world.scene.ground(world.land, at[0], at[1]).expect("valid").expect("ground").height;
+    // Down to the ground, from above all of it.
+    let (eye, target) = ([at[0], ground + 150.0, at[1]], [at[0] + 1.0, ground - 20.0, at[1] - 150.0]);
+    let camera = Camera::looking_at_world(eye, target, 0.9, [0.5, 12_000.0], size);
+    world.view.set(camera).expect("valid");
+    for frame in 0..60 {
+        let drawn = world.positions(&camera);
+        let statistics = world.scene.terrain_statistics(world.land).expect("endless");
+        if frame > 4 {
+            assert!(
+                drawn.iter().all(Option::is_some),
+                "{} pixels of sky in frame {frame}",
+                drawn.iter().filter(|at| at.is_none()).count()
+            );
+        }
+        if statistics.ready == 1.0 {
+            break;
+        }
+        unready += 1;
+        eroded = eroded.max(statistics.levels[..4].iter().sum::<u32>());
+    }
+    assert!(unready > 10 && eroded > 10, "{unready} {eroded}");
+}
+
+/// Erosion that reaches a few samples only is the same wherever nodes are made: a place has one picture.
+#[test]
+fn a_place_has_one_picture() {
+    let camera = |size: [u32; 2]| {
+        Camera::looking_at_world([40.0, 420.0, -700.0], [42.0, 380.0, -740.0], 0.9, [0.5, 12_000.0], size)
+    };
+    let shown = |from: [f64; 2]| {
+        let mut world = World::of(&source(recipe()), [160, 90]);
+        let before = world.above(from, 30.0);
+        world.view.set(before).expect("valid");
+        world.settle();
+        world.view.set(camera([160, 90])).expect("valid");
+        world.settle();
+        picture(&mut world)
+    };
+    let one = shown([900.0, -700.0]);
+    assert!(one == shown([-2_000.0, 5_000.0]));
+    let mut plain = World::of(&source(TerrainRecipe::new(config())), [160, 90]);
+    plain.view.set(camera([160, 90])).expect("valid");
+    plain.settle();
+    let difference = Difference::of(&one, &picture(&mut plain), 3);
+    println!("{difference:?}");
+    assert!(difference.outliers > 0.05, "{difference:?}");
+}
+
+#[test]
+fn erosion_out_of_bounds_is_refused() {
+    let mut scene = Scene::new(&gpu()).expect("made");
+    let mut refused = |source: TerrainSource| match scene.add_terrain(&source) {
+        Err(relievo::Error::Input(error)) => error.path,
+        other => panic!("{other:?}"),
+    };
+    let deep = |erosion_depth: f64| {
+        source(recipe()).with_limits(EndlessLimits { erosion_depth, ..EndlessLimits::default() })
+    };
+    assert_eq!(refused(deep(0.0)), "erosion_depth");
+    assert_eq!(refused(deep(f64::NAN)), "erosion_depth");
+    assert_eq!(refused(deep(1001.0)), "erosion_depth");
+    let many = Some(Thermal { iterations: 125, talus: 20.0 });
+    assert_eq!(refused(source(TerrainRecipe { thermal: many, ..recipe() })), "iterations");
+    let target = source(recipe()).with_target(TerrainRecipe::new(config()), TerrainMorph::default());
+    assert_eq!(refused(target), "recipe");
+}
