@@ -29,7 +29,7 @@ END = re.compile(rb"// relievo [a-z0-9_/]+: generated from|// From relievo's|[^\
 # What a driver or naga says of text that is no shader.
 REFUSED = re.compile(r"Validation|shader parsing|Shader validation|please report this", re.IGNORECASE)
 # Seconds after which a program counts as hanging, which is a way to see a fault.
-LONGEST = 400
+LONGEST = 900
 
 # Each replacement has the length of what it replaces, since offsets in the programs must stay.
 OPERATORS = {

@@ -185,8 +185,7 @@ impl Scene {
         }
         let sent = self.upload()?;
         self.provide(views)?;
-        self.fit(views)?;
-        if let Err(error) = self.stage(views) {
+        if let Err(error) = self.fit(views).and_then(|()| self.stage(views)) {
             // Some changes were taken from their queues without being staged, so the next frame would miss them.
             self.is_broken = true;
             return Err(error);
@@ -194,6 +193,7 @@ impl Scene {
         let gpu = self.gpu.clone();
         self.uploaded = sent + self.staged.len();
         if !self.staging.record(&gpu, encoder, &mut self.staged)? {
+            self.is_broken = true;
             let bound =
                 format!("must be below {FRAMES_IN_FLIGHT}: submit what was recorded, or call invalidate()");
             return Err(InputError::new("recordings", self.staging.busy(), bound).into());

@@ -128,8 +128,10 @@ pub fn eroded_region(recipe: &Recipe, limit: ErosionLimit, own: Region) -> Vec<i
         ..own
     };
     let window = region(&recipe.config, &recipe.features, around);
+    let inside = |row: &[i32]| row[apron as usize..(apron + own.width) as usize].to_vec();
+    let rows = window.chunks_exact(around.width as usize).skip(apron as usize).take(own.width as usize);
+    let origins: Vec<i32> = rows.flat_map(inside).collect();
     let mut eroded = finish(recipe, around.width as usize, &[], window);
-    let origins = region(&recipe.config, &recipe.features, own);
     limit::reference::limit(&origins, &mut eroded, limit.fixed_depth());
     eroded
 }

@@ -20,7 +20,7 @@ fn config(interpolation: HeightInterpolation) -> TerrainConfig {
 }
 
 /// Heights at samples of the whole plane, by column and row.
-fn features(config: &TerrainConfig, points: &[([i32; 2], f64)], mode: FeatureMode) -> TerrainFeatures {
+pub fn features(config: &TerrainConfig, points: &[([i32; 2], f64)], mode: FeatureMode) -> TerrainFeatures {
     let file = |([column, row], height): &([i32; 2], f64)| FeatureFile {
         patch_coordinates: [column.div_euclid(64), row.div_euclid(64)],
         precomputed_heights: vec![column.rem_euclid(64).into(), row.rem_euclid(64).into(), *height],

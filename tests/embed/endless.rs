@@ -348,10 +348,14 @@ fn nodes_grow_with_the_logarithm_of_the_distance() {
     assert!(grown[0] > 20 && grown.iter().all(|more| more <= &(3 * grown[0] / 2)), "{counts:?}");
 }
 
-/// A lost device and a dropped encoder leave no trace: the picture is the same as before.
 #[test]
 fn nodes_are_made_again_after_a_loss() {
-    let mut world = World::new(config(), EndlessLimits::default(), [160, 90]);
+    a_loss_leaves_no_trace(&TerrainSource::endless(config()));
+}
+
+/// A lost device and a dropped encoder leave no trace: the picture is the same as before.
+pub fn a_loss_leaves_no_trace(source: &TerrainSource) {
+    let mut world = World::of(source, [160, 90]);
     let camera = world.above([40.0, -700.0], 12.0);
     world.view.set(camera).expect("valid");
     world.scene.set_statistics(true).expect("counted");

@@ -1,15 +1,19 @@
 //! Endless terrain whose ground is eroded near the views.
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
+use glam::DVec3;
 use relievo::ops::terrain::field::field;
 use relievo::ops::terrain::hydraulic::Hydraulic;
 use relievo::ops::terrain::thermal::Thermal;
 use relievo::scene::{
-    Camera, EndlessLimits, Scene, TerrainConfig, TerrainMorph, TerrainRecipe, TerrainSource,
+    Camera, ElevationLayout, ElevationMap, ElevationTiles, EndlessLimits, FeatureMode, Quality, Ray, Scene,
+    TerrainConfig, TerrainFeatures, TerrainMorph, TerrainRecipe, TerrainSource,
 };
 
+use crate::edited::features;
 use crate::endless::{Path, ROUNDING, World, between, flight, holes, largest, offsets, picture, some};
 use crate::harness::{Difference, gpu};
 
@@ -19,17 +23,22 @@ fn config() -> TerrainConfig {
 }
 
 /// The most that erosion may move a height, in world units.
-const DEPTH: f64 = 1.5;
+const DEPTH: f64 = 0.25;
 
 /// Slopes of more than 20° slide, and rain digs.
 fn recipe() -> TerrainRecipe {
-    let thermal = Some(Thermal { iterations: 12, talus: 8.0 });
-    let hydraulic = Some(Hydraulic { iterations: 5, ..Hydraulic::default() });
+    let thermal = Some(Thermal { iterations: 8, talus: 8.0 });
+    let hydraulic = Some(Hydraulic { iterations: 3, ..Hydraulic::default() });
     TerrainRecipe { thermal, hydraulic, ..TerrainRecipe::new(config()) }
 }
 
 fn source(recipe: TerrainRecipe) -> TerrainSource {
-    let limits = EndlessLimits { nodes_per_frame: 64, erosion_depth: DEPTH, ..EndlessLimits::default() };
+    let limits = EndlessLimits {
+        nodes_per_frame: 64,
+        view_distance: Some(2_500.0),
+        erosion_depth: DEPTH,
+        ..EndlessLimits::default()
+    };
     TerrainSource::from(recipe).with_limits(limits)
 }
 
@@ -37,11 +46,18 @@ fn source(recipe: TerrainRecipe) -> TerrainSource {
 struct Truth {
     recipes: [TerrainRecipe; 2],
     patches: Mutex<HashMap<[i32; 2], Arc<Vec<i32>>>>,
+    /// Number of heights that erosion would move farther than it may.
+    limited: AtomicU32,
 }
 
 impl Truth {
     fn new() -> Self {
-        Self { recipes: [TerrainRecipe::new(config()), recipe()], patches: Mutex::default() }
+        Self::of(recipe())
+    }
+
+    fn of(recipe: TerrainRecipe) -> Self {
+        let plain = TerrainRecipe::new(recipe.config.clone());
+        Self { recipes: [plain, recipe], patches: Mutex::default(), limited: AtomicU32::new(0) }
     }
 
     fn patch(&self, patch: [i32; 2]) -> Arc<Vec<i32>> {
@@ -51,7 +67,12 @@ impl Truth {
         let [plain, eroded] =
             self.recipes.each_ref().map(|recipe| field(recipe, &[patch], 0).expect("valid").remove(0));
         let most = (DEPTH * 65_536.0) as i32;
-        let limited = |(plain, eroded): (i32, i32)| plain + (eroded - plain).clamp(-most, most);
+        let limited = |(plain, eroded): (i32, i32)| {
+            if (eroded - plain).abs() > most {
+                self.limited.fetch_add(1, Ordering::Relaxed);
+            }
+            plain + (eroded - plain).clamp(-most, most)
+        };
         let heights = Arc::new(plain.into_iter().zip(eroded).map(limited).collect::<Vec<_>>());
         self.patches.lock().expect("whole").insert(patch, heights.clone());
         heights
@@ -77,7 +98,7 @@ fn what_is_drawn_is_within_a_pixel_of_the_eroded_ground() {
     let mut world = World::of(&source(recipe()), [160, 90]);
     let mut plain = World::of(&source(TerrainRecipe::new(config())), [160, 90]);
     for (at, height, apart) in
-        [([10.0, 20.0], 2.0, 5.0), ([-3_000.5, 700.0], 60.0, 0.25), ([9.0e6, -9.5e6], 150.0, 0.0)]
+        [([10.0, 20.0], 2.0, 1.0), ([-3_000.5, 700.0], 60.0, 0.0), ([9.0e6, -9.5e6], 120.0, 0.0)]
     {
         let camera = world.above(at, height);
         world.view.set(camera).expect("valid");
@@ -113,8 +134,11 @@ fn a_flight_over_eroded_ground_has_no_holes_and_keeps_its_promise() {
 #[test]
 fn the_ground_of_the_host_is_eroded() {
     let truth = Truth::new();
-    let world = World::of(&source(recipe()), [64, 36]);
-    let mut moved = 0;
+    let mut world = World::of(&source(recipe()), [64, 36]);
+    let camera = world.above([100.0, 100.0], 40.0);
+    world.view.set(camera).expect("valid");
+    world.frame();
+    let (mut moved, mut hits) = (0, 0);
     for at in 0..200 {
         let (x, z) = (37.3 * f64::from(at) + 0.25, 40.0 - 11.7 * f64::from(at));
         let point = world.scene.ground(world.land, x, z).expect("valid").expect("ground");
@@ -122,6 +146,21 @@ fn the_ground_of_the_host_is_eroded() {
         moved += usize::from((point.height - field_height(x, z)).abs() > 0.1);
     }
     assert!(moved > 20, "{moved} of 200 places are eroded");
+    assert!(truth.limited.load(Ordering::Relaxed) > 100, "the limit is never reached");
+    for at in 0..20 {
+        let turn = 0.3 * f64::from(at);
+        let direction = DVec3::new(turn.cos(), -0.3, turn.sin()).normalize();
+        let origin = DVec3::new(100.0, truth.at(100.0, 100.0) + 40.0, 100.0);
+        let Some(hit) =
+            world.scene.pick(&Ray { limit: 400.0, ..Ray::new(origin, direction) }).expect("valid")
+        else {
+            continue;
+        };
+        let [x, y, z] = hit.world().to_array();
+        assert!((y - truth.at(x, z)).abs() < 1e-6 * hit.distance.max(1.0), "{at}: {y}");
+        hits += 1;
+    }
+    assert!(hits > 10, "{hits}");
 }
 
 /// The height without erosion.
@@ -135,8 +174,13 @@ fn field_height(x: f64, z: f64) -> f64 {
 /// While nodes are missing, some are eroded and others beside them are not, and yet the ground is closed: below it there is no sky.
 #[test]
 fn eroded_ground_is_closed_while_nodes_are_missing() {
-    let limits = EndlessLimits { nodes_per_frame: 16, erosion_depth: 6.0, ..EndlessLimits::default() };
-    let thermal = Some(Thermal { iterations: 40, talus: 1.0 });
+    let limits = EndlessLimits {
+        nodes_per_frame: 16,
+        view_distance: Some(1_000.0),
+        erosion_depth: 6.0,
+        ..EndlessLimits::default()
+    };
+    let thermal = Some(Thermal { iterations: 24, talus: 1.0 });
     let recipe = TerrainRecipe { thermal, ..TerrainRecipe::new(config()) };
     let size = [320, 180];
     let mut world = World::of(&source(recipe).with_limits(limits), size);
@@ -191,6 +235,69 @@ fn a_place_has_one_picture() {
 }
 
 #[test]
+fn nodes_are_made_again_after_a_loss() {
+    crate::endless::a_loss_leaves_no_trace(&source(recipe()));
+}
+
+/// Heights that are injected at run time are eroded as those that were there from the beginning.
+#[test]
+fn edited_ground_is_eroded() {
+    let wall: fn(i32) -> TerrainFeatures = |column| {
+        let points: Vec<_> = (-60..0).map(|row| ([column, row], 300.0)).collect();
+        features(&config(), &points, FeatureMode::Keep)
+    };
+    let with = |column: i32| TerrainRecipe { features: wall(column), ..recipe() };
+    let shown = |world: &mut World| {
+        let camera = world.above([31.0, 20.0], 90.0);
+        world.view.set(camera).expect("valid");
+        world.settle();
+        picture(world)
+    };
+    let mut world = World::of(&source(with(30)), [160, 90]);
+    let before = shown(&mut world);
+    world.scene.set_terrain_features(world.land, &wall(34)).expect("edited");
+    let after = shown(&mut world);
+    assert!(after == shown(&mut World::of(&source(with(34)), [160, 90])) && after != before);
+}
+
+/// Over tall ground, at the focal length of a large picture, coarse nodes stand beside the view and behind the eye.
+#[test]
+fn the_promise_holds_for_large_pictures_of_tall_ground() {
+    let config = TerrainConfig { scale_factor: 600.0, ..crate::endless::config() };
+    let thermal = Some(Thermal { iterations: 6, talus: 20.0 });
+    let recipe = TerrainRecipe { thermal, ..TerrainRecipe::new(config) };
+    let limits = EndlessLimits {
+        nodes_per_frame: 256,
+        view_distance: Some(1_500.0),
+        node_size: 33,
+        capacity: 4096,
+        erosion_depth: DEPTH,
+        ..EndlessLimits::default()
+    };
+    let truth = Truth::of(recipe.clone());
+    let mut world = World::of(&source(recipe).with_limits(limits), [240, 136]);
+    world.view = world.scene.view(Quality::pixels(2.0)).expect("made");
+    // The middle of a picture of 1920 × 1080 with a field of view of 0.9.
+    for (at, height) in [([700.0, -300.0], 30.0), ([-1_500.0, 2_600.0], 8.0)] {
+        let ground = world.scene.ground(world.land, at[0], at[1]).expect("valid").expect("ground").height;
+        let (eye, target) =
+            ([at[0], ground + height, at[1]], [at[0] + 10.0, ground + height - 6.0, at[1] - 60.0]);
+        let camera = Camera::looking_at_world(eye, target, 0.12, [0.5, 12_000.0], [240, 136]);
+        world.view.set(camera).expect("valid");
+        world.settle();
+        let drawn = world.positions(&camera);
+        let most = largest(&offsets(&|x, z| truth.at(x, z), &camera, &some(&drawn, 11)));
+        println!(
+            "{height} above: {most} px, {:?}",
+            world.scene.terrain_statistics(world.land).expect("endless")
+        );
+        assert!(most <= 2.0 + ROUNDING, "{most}");
+        // With memory for all nodes, the promise is not relaxed.
+        assert_eq!(world.scene.lod_bias(world.land), Ok(1.0));
+    }
+}
+
+#[test]
 fn erosion_out_of_bounds_is_refused() {
     let mut scene = Scene::new(&gpu()).expect("made");
     let mut refused = |source: TerrainSource| match scene.add_terrain(&source) {
@@ -203,7 +310,14 @@ fn erosion_out_of_bounds_is_refused() {
     assert_eq!(refused(deep(0.0)), "erosion_depth");
     assert_eq!(refused(deep(f64::NAN)), "erosion_depth");
     assert_eq!(refused(deep(1001.0)), "erosion_depth");
-    let many = Some(Thermal { iterations: 125, talus: 20.0 });
+    let map = ElevationMap {
+        layout: ElevationLayout { spacing: 1, first: [0, 0], size: [8, 8] },
+        heights: vec![0.0; 64],
+        margin: 0,
+    };
+    let tiles = ElevationTiles::new(&config(), &map).expect("valid");
+    assert_eq!(refused(source(recipe()).with_elevation(Arc::new(tiles))), "recipe");
+    let many = Some(Thermal { iterations: 126, talus: 20.0 });
     assert_eq!(refused(source(TerrainRecipe { thermal: many, ..recipe() })), "iterations");
     let target = source(recipe()).with_target(TerrainRecipe::new(config()), TerrainMorph::default());
     assert_eq!(refused(target), "recipe");

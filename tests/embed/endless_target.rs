@@ -15,7 +15,13 @@ fn target() -> TerrainConfig {
 }
 
 fn limits() -> EndlessLimits {
-    EndlessLimits { nodes_per_frame: 64, finer_normals: false, ..EndlessLimits::default() }
+    EndlessLimits {
+        nodes_per_frame: 64,
+        view_distance: Some(2_500.0),
+        node_size: 33,
+        finer_normals: false,
+        ..EndlessLimits::default()
+    }
 }
 
 fn source(time: f64) -> TerrainSource {
@@ -67,10 +73,11 @@ fn at_both_ends_it_is_the_terrain_of_one_recipe() {
         let back = back.with_target(TerrainRecipe::new(config()), to);
         assert!(blended == seen(&back, None), "{time}, from the other side");
     }
-    // With itself as its target, it is what it is.
+    // With itself as its target, it is what it is; the bounds of its errors are larger by what blending rounds.
     let same = TerrainSource::endless(config()).with_limits(limits());
     let same = same.with_target(TerrainRecipe::new(config()), TerrainMorph { time: 0.37 });
-    assert!(seen(&same, None) == start);
+    let same = Difference::of(&seen(&same, None), &start, 1);
+    assert!(same.outliers == 0.0, "{same:?}");
 }
 
 /// While the time runs and the camera flies, every frame is within a pixel of the heights of its time, without a hole, and no node is made
@@ -97,6 +104,7 @@ fn every_time_keeps_the_promise() {
     // Another time than the one that is drawn is seen.
     let drawn = world.positions(&camera);
     assert!(largest(&offsets(&|x, z| truth(0.9, x, z), &camera, &some(&drawn, 5))) > 2.0);
+    let mut ready = 0;
     for frame in 0..20 {
         let time = 1.0 - f64::from(frame) / 20.0;
         world.scene.morph_terrain(world.land, TerrainMorph { time }).expect("a target");
@@ -107,8 +115,10 @@ fn every_time_keeps_the_promise() {
         if world.scene.terrain_statistics(world.land).expect("endless").ready == 1.0 {
             let off = largest(&offsets(&|x, z| truth(time, x, z), &camera, &some(&drawn, 5)));
             assert!(off <= 1.0 + ROUNDING, "{off} pixels at {time}, in flight");
+            ready += 1;
         }
     }
+    assert!(ready > 5, "{ready}");
 }
 
 /// The ground answers at once, at every time.
@@ -127,6 +137,11 @@ fn the_ground_is_that_of_the_time() {
 }
 
 #[test]
+fn nodes_are_made_again_after_a_loss() {
+    crate::endless::a_loss_leaves_no_trace(&source(0.6));
+}
+
+#[test]
 fn targets_that_do_not_fit_are_refused() {
     let mut scene = Scene::new(&gpu()).expect("made");
     let mut refused = |target: TerrainRecipe| {
@@ -141,6 +156,8 @@ fn targets_that_do_not_fit_are_refused() {
     assert_eq!(refused(of(TerrainConfig { patch_size: 33, ..target() })), "target.patch_size");
     let despike = Some(Despike { threshold: 1.0 });
     assert_eq!(refused(TerrainRecipe { despike, ..of(target()) }), "target.recipe");
+    let thermal = Some(relievo::scene::Thermal { iterations: 3, talus: 20.0 });
+    assert_eq!(refused(TerrainRecipe { thermal, ..of(target()) }), "target.recipe");
     let land = scene.add_terrain(&TerrainSource::endless(config())).expect("added");
     let without = scene.morph_terrain(land, TerrainMorph::default()).expect_err("refused").to_string();
     assert!(without.contains("with_target"), "{without}");

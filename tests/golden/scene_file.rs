@@ -91,7 +91,7 @@ fn scenes_of_files_equal_their_goldens() {
 fn difference(name: &str, actual: &RgbaImage) -> Difference {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("goldens").join(format!("{name}.png"));
     let golden = image::open(path).expect("a golden").into_rgba8();
-    Difference::of(actual, &golden, Tolerance::IMAGE.levels)
+    Difference::of_golden(actual, &golden, Tolerance::IMAGE.levels)
 }
 
 /// A creature that is missing is missed: the one in front is hidden, and nothing else is changed.

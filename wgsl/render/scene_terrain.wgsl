@@ -34,8 +34,6 @@ struct TerrainView {
     camera_count: u32,
     // Factor of the displacement that the cameras allow: the fraction that levels of detail may use.
     fraction: f32,
-    // Allowed displacement in world units at which no erosion is left; 0 for terrain without erosion.
-    erosion_limit: f32,
 }
 
 // How a node of endless terrain is drawn in a view. A limit is an allowed displacement in world units: where the view allows as much,
@@ -45,8 +43,9 @@ struct TerrainNode {
     borders: vec4<f32>,
     // Limit of all other vertices.
     inner: f32,
-    // Padding, not read.
-    unused_a: f32,
+    // Where an eroded node meets nodes that are not, one bit each: the sides west, east, north, south, then the corners north-west,
+    // north-east, south-west, south-east. Its vertices there are not eroded either.
+    plain: u32,
     // Padding, not read.
     unused_b: f32,
     // Padding, not read.
@@ -203,6 +202,19 @@ fn allowed_at(position: vec3<f32>) -> f32 {
     return ground.fraction * allowed;
 }
 
+// How much of its erosion a vertex of a node shows, 0 to 1: what is missing is at most half of what the cameras allow.
+fn erosion_weight(node: TerrainNode, at: vec2<u32>, allowed: f32) -> f32 {
+    let first = at == vec2<u32>(0u);
+    let last = at == vec2<u32>(terrain.size - 1u);
+    let sides = vec4<bool>(first.x, last.x, first.y, last.y);
+    let corners = vec4<bool>(first.x && first.y, last.x && first.y, first.x && last.y, last.x && last.y);
+    let bits = vec4<u32>(1u, 2u, 4u, 8u);
+    let touched = select(vec4<u32>(0u), bits, sides) | select(vec4<u32>(0u), bits << vec4<u32>(4u), corners);
+    let meets = (touched.x | touched.y | touched.z | touched.w) & node.plain;
+    let weight = clamp(2.0 - allowed / terrain.erosion_depth, 0.0, 1.0);
+    return select(weight, 0.0, meets != 0u);
+}
+
 // How far a vertex of a node has moved onto the triangles of the next coarser level, 0 to 1.
 fn morphed(limit: f32, allowed: f32) -> f32 {
     if limit == STITCHED {
@@ -239,9 +251,9 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     if is_node {
         let allowed = allowed_at(sample + vec3<f32>(0.0, height, 0.0));
         var erosion = Erosion(0u, 0.0);
-        if patch_of.eroded != patch_of.window && allowed < ground.erosion_limit {
+        if patch_of.eroded != patch_of.window {
             let windows = patch_of.eroded - patch_of.window;
-            erosion = Erosion(windows * terrain.in_width * terrain.in_width, 1.0 - allowed / ground.erosion_limit);
+            erosion = Erosion(windows * terrain.in_width * terrain.in_width, erosion_weight(node, at, allowed));
             height = height_at(center, erosion);
             gradient = gradient_at(center, 1u, erosion);
         }

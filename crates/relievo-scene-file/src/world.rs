@@ -120,7 +120,8 @@ impl LoadedScene {
                 Some(relief) => source.with_relief(relief),
                 None => source,
             };
-            let object = scene.add_terrain_async(&source).await.map_err(|error| below("terrain", error))?;
+            let object =
+                scene.add_terrain_async(&source).await.map_err(|error| below("terrain", in_json(error)))?;
             land = Some(object);
             let source = terrain.recipe.config.seed.clone();
             let name = source.clone();
@@ -329,6 +330,14 @@ fn spawn_one(
         scene.play(instance, &Play { clip, start, rate: *rate, wrap: *wrap })?;
     }
     Ok(())
+}
+
+/// An error with the names of fields that JSON has.
+fn in_json(error: Error) -> Error {
+    match error {
+        Error::Input(error) => Error::Input(error.in_json()),
+        other => other,
+    }
 }
 
 /// Prepends a path in the scene file to the path of an input error.

@@ -47,8 +47,7 @@ impl KindInView for TerrainInView {
 /// A terrain in a view that is not set yet. `object` is the number of the terrain's object.
 pub(crate) fn nowhere(object: u32) -> TerrainView {
     let cameras = SelectView::nothing().cameras;
-    let (base, rest) = (IVec2::ZERO, Vec3::ZERO);
-    TerrainView { base, rest, object, cameras, camera_count: 0, fraction: 0.0, erosion_limit: 0.0 }
+    TerrainView { base: IVec2::ZERO, rest: Vec3::ZERO, object, cameras, camera_count: 0, fraction: 0.0 }
 }
 
 /// A terrain as a camera sees it, without levels of detail. Shaders count samples from the one nearest to the eye, so that `f32`

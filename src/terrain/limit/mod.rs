@@ -13,7 +13,7 @@ pub use pass::{LimitBuffers, LimitPass};
 /// How far erosion may move heights. What it would move farther stays at this distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErosionLimit {
-    /// Largest distance in height units: above 0, at most 1000.
+    /// Largest distance in height units, 0.001 to 1000.
     pub depth: f64,
 }
 
@@ -23,7 +23,7 @@ impl ErosionLimit {
     /// # Errors
     /// [`InputError`] that names `depth`.
     pub fn validate(&self) -> Result<(), InputError> {
-        finite("depth", self.depth, 1.0 / HEIGHT_ONE, 1000.0)
+        finite("depth", self.depth, 0.001, 1000.0)
     }
 
     /// The depth in 1/65536 height units.

@@ -23,6 +23,9 @@ use crate::{Error, InputError};
 /// Samples along an edge of a patch.
 const SIZE: u32 = 33;
 
+/// The same of eroded ground, which needs samples around each patch.
+const ERODED_SIZE: u32 = 129;
+
 /// Largest number of patches that are kept.
 const KEPT: usize = 1024;
 
@@ -33,7 +36,7 @@ pub(super) struct FinestGround {
     target: Option<(Box<Recipe>, Morph)>,
     erosion: Option<ErosionLimit>,
     elevation: Option<Elevation>,
-    /// The terrain in patches of [`SIZE`] samples.
+    /// The terrain in patches of [`SIZE`] or [`ERODED_SIZE`] samples.
     patch: TerrainConfig,
     edge: f64,
     patches: Mutex<Patches>,
@@ -52,7 +55,8 @@ impl FinestGround {
         (target, erosion): (Option<(Box<Recipe>, Morph)>, Option<ErosionLimit>),
         elevation: Option<Elevation>,
     ) -> Result<Self, InputError> {
-        let patch = TerrainConfig { patch_size: SIZE, ..recipe.config.clone() };
+        let patch_size = if erosion.is_some() { ERODED_SIZE } else { SIZE };
+        let patch = TerrainConfig { patch_size, ..recipe.config.clone() };
         let patches = Patches { ground: Ground::new(&patch)?, order: VecDeque::new() };
         let edge = patch.edge_length();
         let (recipe, patches) = (recipe.clone(), Mutex::new(patches));
@@ -164,12 +168,12 @@ impl FinestGround {
     fn with(&self, patch: [i32; 2]) -> Result<Option<MutexGuard<'_, Patches>>, InputError> {
         let mut patches = self.patches.lock().unwrap_or_else(PoisonError::into_inner);
         if !patches.ground.contains(patch) {
-            let first = patch.map(|index| i64::from(index) * (i64::from(SIZE) - 1));
+            let first = patch.map(|index| i64::from(index) * (i64::from(self.patch.patch_size) - 1));
             let samples = Region { first, width: self.patch.patch_size, coarser: 0 };
             let apron = self.recipe.apron(0);
             let around = Region {
                 first: first.map(|first| first - i64::from(apron)),
-                width: SIZE + 2 * apron,
+                width: samples.width + 2 * apron,
                 ..samples
             };
             if around.validate(&self.recipe.config).is_err() {

@@ -21,8 +21,6 @@ pub(super) struct ViewTable {
     pub camera_count: u32,
     /// The part of the allowed displacement that levels of detail may use.
     pub fraction: f32,
-    /// The allowed displacement at which no erosion is left.
-    pub erosion_limit: f32,
 }
 
 /// The resources of an endless terrain for one view.
@@ -61,10 +59,9 @@ impl KindInView for EndlessInView {
     fn stage(&self, staged: &mut Staged, camera: &Camera, number: usize) -> Result<Vec<u32>, Error> {
         let tables = self.tables.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let Some(table) = tables.get(number) else { return Ok(Vec::new()) };
-        let ViewTable { cameras, camera_count, fraction, erosion_limit, .. } = *table;
+        let ViewTable { cameras, camera_count, fraction, .. } = *table;
         let view = seen_from(camera, self.spacing, self.object);
-        let view = TerrainView { cameras, camera_count, fraction, erosion_limit, ..view };
-        staged.uniform(&self.uniform, &view)?;
+        staged.uniform(&self.uniform, &TerrainView { cameras, camera_count, fraction, ..view })?;
         staged.elements(&self.nodes, 0, &table.nodes)?;
         Ok(table.shown.clone())
     }

@@ -95,8 +95,9 @@ pub struct EndlessLimits {
     pub node_size: u32,
     /// Whether nodes are shaded with normals of twice their resolution. Default: true. Terrain with a target has none.
     pub finer_normals: bool,
-    /// Largest distance in world units by which erosion may move a height, above 0 and at most 1000; it has no effect without erosion.
-    /// Default: 4. Nodes within sight of half of it are eroded, so their number grows with its square.
+    /// Largest distance in world units by which erosion may move a height, at most 1000; it has no effect without erosion.
+    /// At least 0.001. Default: 4. Ground is eroded where a view allows less than twice as much; the number of nodes there grows with the
+    /// square. An eroded node takes as many passes over its finest heights as there are iterations, and twice the memory for heights.
     pub erosion_depth: f64,
 }
 
@@ -465,28 +466,20 @@ impl Endless {
         self.size.erosion.map_or(0.0, |limit| limit.depth as f32)
     }
 
-    /// The allowed displacement at which a view shows no erosion: twice the depth, if all nodes are eroded that need it. Other nodes are
-    /// drawn as they are without erosion, so it must have faded there.
-    fn erosion_limit(&self, view: &SelectView, fraction: f32, cover: &Cover) -> f32 {
-        let mut limit = 2.0 * self.depth();
-        if limit == 0.0 {
-            return 0.0;
+    /// Where an eroded node that is drawn meets nodes that are not eroded ([`TerrainNode::plain`]). `plain` are those that are drawn.
+    fn plain_beside(&self, leaf: &Leaf, plain: &BTreeSet<Node>) -> u32 {
+        let node = leaf.node;
+        if plain.is_empty() || !self.grid.is_eroded(self.size, node.level) {
+            return 0;
         }
-        let plain = cover.leaves.iter().filter(|leaf| !self.grid.is_eroded(self.size, leaf.node.level));
-        for leaf in plain {
-            let [low, high] = self.node_box(leaf.node).map(|at| at - Placement::corner(view.cell.into()));
-            let half = 0.5 * (high - low) / DVec3::new(PARTS.into(), 1.0, PARTS.into());
-            let radius = (1.000_01 * half.length()) as f32 + self.depth();
-            for at in 0..PARTS * PARTS {
-                let at = DVec3::new(f64::from(2 * (at % PARTS) + 1), 1.0, f64::from(2 * (at / PARTS) + 1));
-                let center = (low + at * half).as_vec3();
-                let seen = view.cameras().iter().filter(|camera| sees(camera, center, radius));
-                let allowed = seen.map(|camera| fraction * camera.allows(center, radius));
-                limit = allowed.fold(limit, f32::min);
-            }
-        }
-        // Slightly less, to allow for rounding.
-        0.999 * limit
+        let is_last = !self.grid.is_eroded(self.size, node.level + 1);
+        let sides = leaf.sides.map(|beside| is_last && beside == Beside::Coarser);
+        let corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]].map(|corner| {
+            let beside = node.beside(corner);
+            (node.level + 1..=self.grid.top).any(|level| plain.contains(&beside.ancestor(level)))
+        });
+        let bits = sides.into_iter().chain(corners).enumerate();
+        bits.filter(|(_, is_plain)| *is_plain).fold(0, |bits, (at, _)| bits | 1 << at)
     }
 
     /// The error of a node because of holes, which only the finest nodes have: the width of the widest hole that is missing.
@@ -753,11 +746,12 @@ impl Endless {
 
     /// How a view draws its nodes.
     fn table(&self, view: &SelectView, fraction: f32, cover: &Cover) -> ViewTable {
-        let nobody =
-            TerrainNode { borders: [0.0; 4], inner: 0.0, unused_a: 0.0, unused_b: 0.0, unused_c: 0.0 };
+        let nobody = TerrainNode { borders: [0.0; 4], inner: 0.0, plain: 0, unused_b: 0.0, unused_c: 0.0 };
         let capacity = self.statistics.capacity;
+        let leaves = cover.leaves.iter().map(|leaf| leaf.node);
+        let plain = leaves.filter(|node| !self.grid.is_eroded(self.size, node.level)).collect();
         let (mut nodes, mut shown) = (vec![nobody; capacity], vec![0_u32; capacity.div_ceil(32)]);
-        for Leaf { node, sides } in &cover.leaves {
+        for leaf @ Leaf { node, sides } in &cover.leaves {
             let Some(Resident { slot, .. }) = self.residents.get(node).copied() else { continue };
             let own = self.limit(*node);
             let border = |beside: &Beside| match beside {
@@ -765,13 +759,15 @@ impl Endless {
                 Beside::Coarser => STITCHED,
                 Beside::Same(other) => own.max(self.limit(*other)),
             };
-            nodes[slot as usize] =
-                TerrainNode { borders: sides.each_ref().map(border), inner: own, ..nobody };
+            nodes[slot as usize] = TerrainNode {
+                borders: sides.each_ref().map(border),
+                inner: own,
+                plain: self.plain_beside(leaf, &plain),
+                ..nobody
+            };
             shown[slot as usize / 32] |= 1 << (slot % 32);
         }
-        let erosion_limit = self.erosion_limit(view, fraction, cover);
-        let SelectView { cameras, camera_count, .. } = *view;
-        ViewTable { nodes, shown, cameras, camera_count, fraction, erosion_limit }
+        ViewTable { nodes, shown, cameras: view.cameras, camera_count: view.camera_count, fraction }
     }
 
     /// Chooses what the views of a frame draw, and what the frame makes. Returns the instances that are placed anew.
@@ -975,6 +971,8 @@ fn check_target(config: &TerrainConfig, target: &Recipe, grid: Grid) -> Result<(
     target.validate(&[], 0)?;
     let levels = (target.config.coarse_levels, config.coarse_levels);
     InputError::check_same("coarse_levels", levels.0, levels.1, "as at time 0")?;
+    let bound = || "must have no erosion where terrain is endless";
+    InputError::check(target.apron(0) == 0, "recipe", "erosion", bound)?;
     pool::check(target, grid)
 }
 
@@ -985,26 +983,22 @@ fn check_holes(holes: &[TerrainHole]) -> Result<(), InputError> {
     holes.iter().enumerate().try_for_each(below)
 }
 
-/// Whether a camera may see a part of a sphere.
-fn sees(camera: &LodCamera, center: Vec3, radius: f32) -> bool {
+/// The displacement that a camera allows to a sphere if it turns towards it. Spheres that it does not see as it is may be
+/// [`OUTSIDE`] times coarser.
+fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
     let towards = center - camera.eye;
     let distance = towards.length();
     if camera.perspective == 0.0 || distance <= radius {
-        return true;
+        return camera.allows(center, radius);
     }
     // The picture lies in a cone around the axis: its diagonal is at most 2.1 times the root of the number of its pixels, as long as
     // its sides are at most 4 : 1.
     let half_angle = (1.05 * camera.pixel_count.sqrt() / camera.focal).atan();
-    camera.ahead.angle_between(towards) - (radius / distance).asin() <= half_angle
-}
-
-/// The displacement that a camera allows to a sphere if it turns towards it. Spheres that it does not see as it is may be
-/// [`OUTSIDE`] times coarser.
-fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
-    if sees(camera, center, radius) {
+    let aside = camera.ahead.angle_between(towards) - (radius / distance).asin();
+    if aside <= half_angle {
         return camera.allows(center, radius);
     }
-    OUTSIDE * LodCamera { ahead: (center - camera.eye).normalize(), ..*camera }.allows(center, radius)
+    OUTSIDE * LodCamera { ahead: towards / distance, ..*camera }.allows(center, radius)
 }
 
 /// The facts of a node of a level, from what the device found and what lies below. `injected` bounds what finer injected heights
@@ -1050,9 +1044,9 @@ impl Facts {
         }
     }
 
-    /// The facts of a node whose heights lie between these and eroded ones, at most `depth` away. Erosion takes half of what a view
-    /// allows: it is shown in full but for as much, so the node's own error may take the other half. Nodes that are not eroded
-    /// are drawn where a view allows twice the depth.
+    /// The facts of a node whose heights lie between these and eroded ones, at most `depth` away. Of what a view allows, erosion that is
+    /// not shown takes at most half, so the node's own error may take the other half. Nodes that are not eroded are drawn where a
+    /// view allows twice the depth.
     fn eroded(self, eroded: Self, depth: f64, is_eroded: bool) -> Self {
         let [low, high] = self.heights;
         let error = self.error.max(if is_eroded { eroded.error } else { depth as f32 });
