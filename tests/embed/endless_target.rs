@@ -89,8 +89,8 @@ fn every_time_keeps_the_promise() {
     world.view.set(camera).expect("valid");
     world.settle();
     let mut most = 0.0_f64;
-    for frame in 0..=10 {
-        let time = f64::from(frame) / 10.0;
+    for frame in 0..=4 {
+        let time = f64::from(frame) / 4.0;
         world.scene.morph_terrain(world.land, TerrainMorph { time }).expect("a target");
         let drawn = world.positions(&camera);
         let statistics = world.scene.terrain_statistics(world.land).expect("endless");
@@ -105,8 +105,8 @@ fn every_time_keeps_the_promise() {
     let drawn = world.positions(&camera);
     assert!(largest(&offsets(&|x, z| truth(0.9, x, z), &camera, &some(&drawn, 5))) > 2.0);
     let mut ready = 0;
-    for frame in 0..20 {
-        let time = 1.0 - f64::from(frame) / 20.0;
+    for frame in 0..10 {
+        let time = 1.0 - f64::from(frame) / 10.0;
         world.scene.morph_terrain(world.land, TerrainMorph { time }).expect("a target");
         let camera = world.above([1.0e6 + 6.0 * f64::from(frame), 40.0], 60.0);
         world.view.set(camera).expect("valid");
@@ -118,7 +118,7 @@ fn every_time_keeps_the_promise() {
             ready += 1;
         }
     }
-    assert!(ready > 5, "{ready}");
+    assert!(ready > 2, "{ready}");
 }
 
 /// The ground answers at once, at every time.
