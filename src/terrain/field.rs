@@ -122,11 +122,7 @@ pub(crate) fn region_of(
 /// `limit`. The region must be valid with [`Recipe::apron`] samples around it. The recipe must have no despiking.
 pub fn eroded_region(recipe: &Recipe, limit: ErosionLimit, own: Region) -> Vec<i32> {
     let apron = recipe.apron(0);
-    let around = Region {
-        first: own.first.map(|first| first - i64::from(apron)),
-        width: own.width + 2 * apron,
-        ..own
-    };
+    let around = own.grown(apron);
     let window = region(&recipe.config, &recipe.features, around);
     let inside = |row: &[i32]| row[apron as usize..(apron + own.width) as usize].to_vec();
     let rows = window.chunks_exact(around.width as usize).skip(apron as usize).take(own.width as usize);

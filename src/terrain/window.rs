@@ -63,6 +63,12 @@ impl Windows {
 }
 
 impl Region {
+    /// The region with `apron` more samples on every side.
+    pub(crate) fn grown(self, apron: u32) -> Self {
+        let first = self.first.map(|first| first - i64::from(apron));
+        Self { first, width: self.width + 2 * apron, ..self }
+    }
+
     /// Columns and rows of the region at every level of subdivision, starting with the base lattice.
     pub(crate) fn levels(&self, config: &TerrainConfig) -> Vec<[Span; 2]> {
         let coarser: fn(Span) -> Span = match (config.border, config.interpolation) {

@@ -170,13 +170,7 @@ impl FinestGround {
         if !patches.ground.contains(patch) {
             let first = patch.map(|index| i64::from(index) * (i64::from(self.patch.patch_size) - 1));
             let samples = Region { first, width: self.patch.patch_size, coarser: 0 };
-            let apron = self.recipe.apron(0);
-            let around = Region {
-                first: first.map(|first| first - i64::from(apron)),
-                width: samples.width + 2 * apron,
-                ..samples
-            };
-            if around.validate(&self.recipe.config).is_err() {
+            if samples.grown(self.recipe.apron(0)).validate(&self.recipe.config).is_err() {
                 return Ok(None);
             }
             let Some(heights) = self.heights(samples)? else { return Ok(None) };

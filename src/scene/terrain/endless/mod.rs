@@ -566,14 +566,7 @@ impl Endless {
         let is_changed = |node: &Node| {
             let own = self.grid.region_of(*node);
             // Erosion carries a change as far as its iterations reach.
-            let region = match self.grid.is_eroded(self.size, node.level) {
-                true => Region {
-                    first: own.first.map(|first| first - i64::from(apron)),
-                    width: own.width + 2 * apron,
-                    ..own
-                },
-                false => own,
-            };
+            let region = if self.grid.is_eroded(self.size, node.level) { own.grown(apron) } else { own };
             changed.iter().any(|point| point.changes(region))
         };
         let stale: Vec<Node> = self.residents.keys().filter(|node| is_changed(node)).copied().collect();
@@ -748,7 +741,7 @@ impl Endless {
     fn table(&self, view: &SelectView, fraction: f32, cover: &Cover) -> ViewTable {
         let nobody = TerrainNode { borders: [0.0; 4], inner: 0.0, plain: 0, unused_b: 0.0, unused_c: 0.0 };
         let capacity = self.statistics.capacity;
-        let leaves = cover.leaves.iter().map(|leaf| leaf.node);
+        let leaves = cover.leaves.iter().map(|leaf| leaf.node).filter(|_| self.size.erosion.is_some());
         let plain = leaves.filter(|node| !self.grid.is_eroded(self.size, node.level)).collect();
         let (mut nodes, mut shown) = (vec![nobody; capacity], vec![0_u32; capacity.div_ceil(32)]);
         for leaf @ Leaf { node, sides } in &cover.leaves {
