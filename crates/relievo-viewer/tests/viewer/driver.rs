@@ -113,7 +113,10 @@ impl Driver {
         self.wait = output.wait;
         if let Some(tree) = output.platform.accesskit_update {
             let all: HashMap<_, _> = tree.nodes.iter().map(|(id, node)| (*id, node)).collect();
-            self.nodes = all.values().filter_map(|node| named(node, &all)).collect();
+            // Of widgets with the same name, the highest one: legends of plots repeat names of controls.
+            let mut widgets: Vec<_> = all.values().filter_map(|node| named(node, &all)).collect();
+            widgets.sort_by(|(_, (_, one)), (_, (_, other))| other.top().total_cmp(&one.top()));
+            self.nodes = widgets.into_iter().collect();
             self.focused = all.get(&tree.focus).and_then(|node| named(node, &all)).map(|(name, _)| name);
         }
         let view =
