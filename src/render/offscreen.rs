@@ -127,7 +127,7 @@ impl Offscreen {
         self.size
     }
 
-    /// The texture of a colour attachment, with one sample per pixel, for the caller's own passes. A shader may read it.
+    /// The texture of a colour attachment, with one sample per pixel, for the caller's own passes. A shader may read it, and a copy may write it.
     /// A colour format with `Srgb` in its name can also be viewed without the conversion. `None` if there is no such
     /// attachment.
     pub fn color(&self, index: usize) -> Option<&wgpu::Texture> {
@@ -288,7 +288,8 @@ impl Offscreen {
 
 fn texture(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
-    let read = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+    let read =
+        wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING;
     let plain = [format.remove_srgb_suffix()];
     let is_viewed = samples == 1 && plain[0] != format;
     gpu.device().create_texture(&wgpu::TextureDescriptor {

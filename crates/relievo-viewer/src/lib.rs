@@ -15,6 +15,7 @@ mod document;
 mod experiment;
 mod eye;
 mod history;
+mod images;
 mod load;
 mod overlay;
 mod panel;

@@ -18,6 +18,7 @@ use relievo_scene_file::{BuiltIns, SceneFile, World, WorldKind};
 
 use crate::document::{Content, Document};
 use crate::eye::Eye;
+use crate::images;
 use crate::source::{Source, Throttled, sleep};
 use crate::stage::Stage;
 use crate::streaming::{Fetching, Streaming};
@@ -156,22 +157,24 @@ impl Teller {
 }
 
 async fn run(job: Job, teller: Teller) {
-    let loader = Loader { teller: &teller, files: RefCell::default() };
+    let loader = Loader { teller: &teller, gpu: job.gpu.clone(), files: RefCell::default() };
     let news = match loader.load(job).await {
         Ok(ready) => News::Ready(Box::new(ready)),
         Err(error) => News::Failed(error.to_string()),
     };
+    images::forget();
     teller.tell(news);
 }
 
 struct Loader<'a> {
     teller: &'a Teller,
+    gpu: Gpu,
     files: RefCell<HashMap<PathBuf, Arc<[u8]>>>,
 }
 
 impl Loader<'_> {
     async fn load(&self, job: Job) -> Result<Ready, Error> {
-        let Job { gpu, name, source, rate, changed, fetching } = job;
+        let Job { name, source, rate, changed, fetching, .. } = job;
         let throttled = Throttled { source: &*source, rate };
         let mut fetching = fetching;
         let (document, known, is_framed) = match changed {
@@ -197,7 +200,7 @@ impl Loader<'_> {
         let file = renamed.file().map_err(in_file)?;
         if let (Some(url), Some(fetching), true) = (source.url(&name), fetching, Streaming::suits(&file)) {
             let streaming = Streaming::new(file, &url, fetching);
-            return self.streamed(gpu, document, streaming, (source, is_framed)).await;
+            return self.streamed(document, streaming, (source, is_framed)).await;
         }
         self.fetch_all(&file, &throttled).await.map_err(in_file)?;
         let loaded = self
@@ -205,7 +208,7 @@ impl Loader<'_> {
             .await
             .map_err(in_file)?;
         self.teller.step("building the scene on the device").await;
-        let world = loaded.build_async(&gpu).await.map_err(|error| match error {
+        let world = loaded.build_async(&self.gpu).await.map_err(|error| match error {
             Error::Input(source) => in_file(source),
             other => other,
         })?;
@@ -220,15 +223,14 @@ impl Loader<'_> {
     /// Builds a scene of a site, as soon as there is something to show.
     async fn streamed(
         &self,
-        gpu: Gpu,
         document: Document,
         mut streaming: Streaming,
         from: (Arc<dyn Source>, bool),
     ) -> Result<Ready, Error> {
         self.teller.step("waiting for what the scene needs").await;
-        let loaded = streaming.begin(|why| _ = self.waits(why)).await?;
+        let loaded = streaming.begin(&self.gpu, |why| _ = self.waits(why)).await?;
         self.teller.step("building the scene on the device").await;
-        let mut world = loaded.build_async(&gpu).await?;
+        let mut world = loaded.build_async(&self.gpu).await?;
         self.teller.step("waiting for the coarsest level").await;
         streaming.appear(&mut world, |why| _ = self.waits(why)).await?;
         for arrival in streaming.arrivals() {
@@ -354,6 +356,8 @@ impl Loader<'_> {
         let mut refused: BTreeMap<PathBuf, (io::ErrorKind, String)> = BTreeMap::new();
         loop {
             self.teller.step(what).await;
+            self.files.borrow().values().for_each(|file| images::note(file));
+            images::decode(&self.gpu).await;
             let lacking = RefCell::new(BTreeSet::new());
             let read = |name: &Path| match (self.files.borrow().get(name), refused.get(name)) {
                 (Some(bytes), _) => Ok(bytes.to_vec()),
@@ -364,6 +368,9 @@ impl Loader<'_> {
                 }
             };
             let done = work(&read);
+            if images::decode(&self.gpu).await {
+                continue;
+            }
             let lacking = lacking.into_inner();
             if lacking.is_empty() || done.is_ok() {
                 return done;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use relievo::gpu::Gpu;
 use relievo::scene::View;
 use relievo::{Error, InputError};
 #[cfg(target_arch = "wasm32")]
@@ -19,6 +20,7 @@ use relievo_samples::Samples;
 use relievo_scene_file::{LoadedScene, SceneFile, World};
 use web_time::Instant;
 
+use crate::images;
 use crate::load::Arrival;
 use crate::source::sleep;
 
@@ -234,10 +236,15 @@ impl Streaming {
     ///
     /// # Errors
     /// As for [`StreamedScene::begin`].
-    pub async fn begin(&mut self, wait: impl Fn(&str)) -> Result<LoadedScene, Error> {
+    pub async fn begin(&mut self, gpu: &Gpu, wait: impl Fn(&str)) -> Result<LoadedScene, Error> {
         loop {
-            if let Some(loaded) = self.scene.begin(self.began.elapsed(), &Samples)? {
-                return Ok(loaded.clone());
+            let loaded = self.scene.begin(self.began.elapsed(), &Samples).map(|loaded| loaded.cloned());
+            // With an image that it lacked, the scene may begin.
+            if loaded.is_err() && images::decode(gpu).await {
+                continue;
+            }
+            if let Some(loaded) = loaded? {
+                return Ok(loaded);
             }
             if let Some(why) = &self.scene.fetcher().transport().failure {
                 wait(why);

@@ -62,6 +62,7 @@ pub fn ask() -> u32 {
 /// Opens the viewer in the page's canvas.
 pub fn start() {
     std::panic::set_hook(Box::new(|panic| fail(&format!("The viewer ended: {panic}"))));
+    crate::images::register();
     let events = match EventLoop::<Told>::with_user_event().build() {
         Ok(events) => events,
         Err(error) => return fail(&error.to_string()),
@@ -101,7 +102,7 @@ fn storage() -> Option<web_sys::Storage> {
     web_sys::window()?.local_storage().ok()?
 }
 
-fn other(error: &JsValue) -> io::Error {
+pub(crate) fn other(error: &JsValue) -> io::Error {
     let message = Reflect::get(error, &"message".into()).ok().and_then(|message| message.as_string());
     io::Error::other(message.unwrap_or_else(|| format!("{error:?}")))
 }

@@ -114,5 +114,7 @@ fn reader<'a>(path: &str, bytes: &'a [u8]) -> Result<FormatReader<'a>, InputErro
     let Some(format) = format.filter(|format| FORMATS.contains(format)) else {
         return Err(refused(path, bytes, "must be PNG, JPEG or WebP".to_owned()));
     };
-    Ok((ImageReader::with_format(Cursor::new(bytes), format), format))
+    // Finds decoders of `image::hooks` too.
+    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+    Ok((reader.map_err(|error| unreadable(path, bytes, format, &error.into()))?, format))
 }

@@ -2,6 +2,7 @@
 //! keys, every control, mistakes, and two pages at once.
 
 mod controls;
+mod images;
 mod verify;
 
 use std::path::{Path, PathBuf};
@@ -133,6 +134,7 @@ fn plan(folder: &Path, port: u16) -> Vec<Value> {
         case("land.json", "scene=/land.json", [320, 240]),
         case("typed", "scene=/typed.gltf", [320, 240]),
         case("panel", "scene=/corner.obj", [640, 480]),
+        case("photos", "scene=/photos.json&time=0", SIZES[0]),
     ];
     plan[0]["key"] = json!(["KeyL", "l"]);
     plan[0]["stays"] = json!(true);
@@ -245,7 +247,13 @@ fn visit(folder: &Path, flags: &[&str], plan: &[Value], heard: &mut dyn FnMut(&s
     let mistake = SCENE.replace("\"seed\": \"page\"", "\"seed\": 7");
     let plan = serde_json::to_vec(plan).expect("JSON");
     let rock_file = relievo_samples::rock().expect("built in").to_glb().expect("written");
-    let files = [
+    let images = images::files();
+    for (name, bytes) in &images {
+        std::fs::write(folder.join(name), bytes).expect("written");
+    }
+    let addresses = images.iter().map(|(name, bytes)| (format!("/{name}"), bytes.as_slice()));
+    let addresses: Vec<_> = addresses.collect();
+    let mut files = vec![
         ("/", include_bytes!("page.html").as_slice()),
         ("/plan.json", plan.as_slice()),
         ("/viewer/index.html", index.as_bytes()),
@@ -261,6 +269,7 @@ fn visit(folder: &Path, flags: &[&str], plan: &[Value], heard: &mut dyn FnMut(&s
         ("/dropped.json", DROPPED.as_bytes()),
         ("/typed.gltf", TYPED.as_bytes()),
     ];
+    files.extend(addresses.iter().map(|(address, bytes)| (address.as_str(), *bytes)));
     let browser = browser::program().expect("the suite needs a browser");
     let start = Instant::now();
     let said = browser::visit_heard(&browser, flags, &files, Duration::from_secs(1200), heard);
@@ -311,12 +320,12 @@ fn swiftshader(folder: &Path) -> Command {
     command
 }
 
-/// The same scene, drawn natively on Chromium's software adapter.
-fn native(folder: &Path, size: [u32; 2]) -> RgbaImage {
-    let out = folder.join(format!("native-{}.png", size[0]));
+/// A scene, drawn natively on Chromium's software adapter.
+fn native(folder: &Path, scene: &str, size: [u32; 2]) -> RgbaImage {
+    let out = folder.join(format!("native-{scene}-{}.png", size[0]));
     let size = format!("{}x{}", size[0], size[1]);
     let output = swiftshader(folder)
-        .args(["view", "scene.json", "--time", "0", "--size", &size, "--picture"])
+        .args(["view", scene, "--time", "0", "--size", &size, "--picture"])
         .arg(&out)
         .output()
         .expect("started");
@@ -324,12 +333,12 @@ fn native(folder: &Path, size: [u32; 2]) -> RgbaImage {
     image::open(out).expect("a picture").into_rgba8()
 }
 
-/// Compares a case's picture with the native one. Both are kept in the folder of the suite.
-fn is_native(name: &str, page: &Page, ratio: f64) {
+/// Compares a case's picture of a scene with the native one. Both are kept in the folder of the suite.
+fn is_native(name: &str, scene: &str, page: &Page, ratio: f64) {
     let case = case(name);
     assert_eq!(case["ratio"], ratio, "{name}");
     let shown = picture(&case["picture"], &case["done"]["picture"]);
-    let drawn = native(page.folder.path(), [shown.width(), shown.height()]);
+    let drawn = native(page.folder.path(), scene, [shown.width(), shown.height()]);
     let kept = Path::new(env!("CARGO_TARGET_TMPDIR"));
     for (whose, picture) in [("page", &shown), ("native", &drawn)] {
         picture.save(kept.join(format!("{whose}-{name}.png"))).expect("written");
@@ -348,13 +357,18 @@ fn is_native(name: &str, page: &Page, ratio: f64) {
 #[test]
 fn the_picture_of_the_page_is_the_native_one() {
     for name in ["large", "small"] {
-        is_native(name, page(), 1.0);
+        is_native(name, "scene.json", page(), 1.0);
     }
 }
 
 #[test]
 fn the_picture_of_the_page_is_the_native_one_at_a_pixel_ratio_of_two() {
-    is_native("double", double(), 2.0);
+    is_native("double", "scene.json", double(), 2.0);
+}
+
+#[test]
+fn images_that_the_browser_decodes_are_the_native_ones() {
+    is_native("photos", "photos.json", page(), 1.0);
 }
 
 #[test]
