@@ -6,12 +6,10 @@ use crate::parallel::prelude::*;
 use crate::terrain::border::neighbours;
 use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;
-use crate::terrain::hydraulic::Hydraulic;
 use crate::terrain::lattice::Given;
 use crate::terrain::limit::ErosionLimit;
 use crate::terrain::pad::surrounds;
-use crate::terrain::recipe::Recipe;
-use crate::terrain::thermal::Thermal;
+use crate::terrain::recipe::{ErosionStage, Recipe};
 use crate::terrain::window::{Region, Span, Window};
 
 /// Final heights of `patches` in 1/65536 height units, one list per patch. A list has rows of patchSize + 2·margin samples: the
@@ -141,36 +139,21 @@ fn finish(recipe: &Recipe, mut width: usize, injected: &[(u32, u32)], mut window
         width -= 2;
     }
     let scale = recipe.config.terrain_scale;
-    let mut eroded = Eroded { window, width };
-    recipe.thermal.into_iter().for_each(|thermal| eroded.slide(thermal, scale));
-    recipe.hydraulic.into_iter().for_each(|hydraulic| eroded.rain(hydraulic, scale));
-    recipe.thermal_after.into_iter().for_each(|thermal| eroded.slide(thermal, scale));
-    eroded.window
-}
-
-/// A window of heights whose width shrinks by 2 with every iteration of erosion.
-struct Eroded {
-    window: Vec<i32>,
-    width: usize,
-}
-
-impl Eroded {
-    /// Applies all iterations of thermal erosion.
-    fn slide(&mut self, thermal: Thermal, scale: f64) {
-        for _ in 0..thermal.iterations {
-            self.window =
-                thermal::reference::thermal(&self.window, self.width, thermal.fixed_threshold(scale));
-            self.width -= 2;
-        }
-    }
-
-    /// Applies all cycles of hydraulic erosion.
-    fn rain(&mut self, hydraulic: Hydraulic, scale: f64) {
+    for stage in recipe.erosion() {
         let mut flow = Vec::new();
-        for cycle in 0..hydraulic.iterations {
-            let params = hydraulic.params(scale, cycle, self.width as u32);
-            (self.window, flow) = hydraulic::reference::hydraulic(&self.window, &flow, &params);
-            self.width -= 2;
+        for iteration in 0..stage.iterations() {
+            match stage {
+                ErosionStage::Thermal(thermal) => {
+                    window = thermal::reference::thermal(&window, width, thermal.fixed_threshold(scale));
+                }
+                ErosionStage::Hydraulic(hydraulic) => {
+                    let params = hydraulic.params(scale, iteration, width as u32);
+                    (window, flow) = hydraulic::reference::hydraulic(&window, &flow, &params);
+                }
+            }
+            // Each iteration drops the outermost ring of samples.
+            width -= 2;
         }
     }
+    window
 }

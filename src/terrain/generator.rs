@@ -4,21 +4,18 @@
 //! sample of the windows, or ten with hydraulic erosion. These numbers include the results. Each stage frees the data that the
 //! next stage does not read. An index of features takes two more bits per sample and level.
 
-mod erosion;
-
 use crate::Error;
 use crate::gpu::{Gpu, GpuError};
 use crate::terrain::border::{BorderPass, neighbours};
 use crate::terrain::config::Border;
 use crate::terrain::despike::{DespikeBuffers, DespikePass};
+use crate::terrain::erosion::{Eroding, ErosionPass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::{Fields, after};
 use crate::terrain::height::{HeightBuffers, HeightScratch};
-use crate::terrain::hydraulic::HydraulicPass;
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
 use crate::terrain::regions::RegionPass;
-use crate::terrain::thermal::ThermalPass;
 use crate::terrain::window::Lattice;
 use crate::terrain::window::{Window, Windows};
 
@@ -30,9 +27,7 @@ pub struct Generator {
     border: BorderPass,
     pad: PadPass,
     despike: DespikePass,
-    thermal: ThermalPass,
-    /// `None` for recipes without hydraulic erosion, for which this pipeline is not compiled.
-    hydraulic: Option<HydraulicPass>,
+    erosion: ErosionPass,
 }
 
 impl Generator {
@@ -51,8 +46,7 @@ impl Generator {
                 Some(_) => DespikePass::with_features(gpu)?,
                 None => DespikePass::new(gpu)?,
             },
-            thermal: ThermalPass::new(gpu)?,
-            hydraulic: recipe.hydraulic.map(|_| HydraulicPass::new(gpu)).transpose()?,
+            erosion: ErosionPass::new(gpu, &recipe)?,
             recipe,
         })
     }
@@ -226,25 +220,25 @@ impl Generator {
         injected: &[Vec<(u32, u32)>],
         windows: Fields,
     ) -> Result<Fields, Error> {
-        let Recipe { despike, thermal, hydraulic, thermal_after, .. } = self.recipe;
         if self.recipe.apron(0) == 0 {
             return Ok(windows);
         }
         // Every stage drops a ring of samples, so the second buffer can be one sample smaller on each side.
         let other = Fields::new(gpu, "terrain windows", windows.cropped(1).width, windows.count)?;
         let mut both = [windows, other];
-        if let Some(despike) = despike {
+        if let Some(despike) = self.recipe.despike {
             let features = self.index(gpu, apron, injected)?;
             let buffers = DespikeBuffers { windows: &both[0], features: &features, cropped: &both[1] };
             let job = self.despike.prepare(gpu, despike, buffers)?;
             gpu.run_async("terrain/despike", |encoder| job.record(encoder)).await?;
             both = after(both, 1);
         }
-        both = self.slide(gpu, thermal, both).await?;
-        if let (Some(hydraulic), Some(pass)) = (hydraulic, &self.hydraulic) {
-            both = self.rain(gpu, (pass, hydraulic), both).await?;
+        let flows = self.erosion.flows(gpu, &both[0])?;
+        let eroding = Eroding { windows: &both, flows: flows.as_ref() };
+        let (jobs, windows) = self.erosion.prepare(gpu, &self.recipe, eroding)?;
+        for job in jobs {
+            job.run_async(gpu).await?;
         }
-        let [windows, _] = self.slide(gpu, thermal_after, both).await?;
         Ok(windows)
     }
 

@@ -9,6 +9,8 @@ pub mod config;
 pub mod cover;
 pub mod despike;
 pub mod elevation;
+#[cfg(feature = "gpu")]
+pub(crate) mod erosion;
 pub mod export;
 pub mod features;
 pub mod field;

@@ -31,6 +31,23 @@ pub struct Recipe {
     pub thermal_after: Option<Thermal>,
 }
 
+/// A stage of erosion, with at least one iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum ErosionStage {
+    Thermal(Thermal),
+    Hydraulic(Hydraulic),
+}
+
+impl ErosionStage {
+    /// Number of iterations.
+    pub fn iterations(self) -> u32 {
+        match self {
+            Self::Thermal(thermal) => thermal.iterations,
+            Self::Hydraulic(hydraulic) => hydraulic.iterations,
+        }
+    }
+}
+
 impl Recipe {
     /// Creates a recipe without features, despiking or erosion.
     pub fn new(config: TerrainConfig) -> Self {
@@ -58,15 +75,16 @@ impl Recipe {
     /// Number of samples that generation must add on each side of a patch, so that `margin` samples remain after all operations.
     /// Despiking and each iteration of erosion use up one sample per side.
     pub fn apron(&self, margin: u32) -> u32 {
-        let iterations = |thermal: Option<Thermal>| thermal.map_or(0, |thermal| thermal.iterations);
-        [
-            self.despike.map_or(0, |_| 1),
-            iterations(self.thermal),
-            self.hydraulic.map_or(0, |hydraulic| hydraulic.iterations),
-            iterations(self.thermal_after),
-        ]
-        .into_iter()
-        .fold(margin, u32::saturating_add)
+        let eroded = self.erosion().map(ErosionStage::iterations).fold(margin, u32::saturating_add);
+        eroded.saturating_add(self.despike.map_or(0, |_| 1))
+    }
+
+    /// The stages of erosion, in their order.
+    pub(crate) fn erosion(&self) -> impl Iterator<Item = ErosionStage> + use<> {
+        let thermal = |thermal: Option<Thermal>| thermal.map(ErosionStage::Thermal);
+        let hydraulic = self.hydraulic.map(ErosionStage::Hydraulic);
+        let all = [thermal(self.thermal), hydraulic, thermal(self.thermal_after)];
+        all.into_iter().flatten().filter(|stage| stage.iterations() > 0)
     }
 
     /// Positions (column, row) of the injected points in each patch's window. Despiking leaves these points unchanged. Without

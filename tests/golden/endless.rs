@@ -6,6 +6,8 @@ use glam::Vec3;
 use relievo::asset::Light;
 use relievo::ops::terrain::config::HeightInterpolation;
 use relievo::ops::terrain::field::region;
+use relievo::ops::terrain::hydraulic::Hydraulic;
+use relievo::ops::terrain::thermal::Thermal;
 use relievo::ops::terrain::window::Region;
 use relievo::render::{Layer, Offscreen, Renderer};
 use relievo::scene::{
@@ -28,10 +30,20 @@ fn config() -> TerrainConfig {
     }
 }
 
+/// Many nodes a frame, so that the picture is there soon.
+fn limits() -> EndlessLimits {
+    EndlessLimits { nodes_per_frame: 128, ..EndlessLimits::default() }
+}
+
 /// Compares the picture `height` units above the ground, a million samples from the origin, with its golden.
 fn check(height: f64, name: &str) {
     let at = [1.0e6, 2_000.0];
-    check_view(&TerrainSource::endless(config()), (at, height), [at[0] + 300.0, at[1] + 1_000.0], name);
+    check_view(
+        &TerrainSource::endless(config()).with_limits(limits()),
+        (at, height),
+        [at[0] + 300.0, at[1] + 1_000.0],
+        name,
+    );
 }
 
 /// Compares the picture `height` units above the ground at `at`, towards `to`, with its golden.
@@ -40,8 +52,7 @@ fn check_view(source: &TerrainSource, (at, height): ([f64; 2], f64), to: [f64; 2
     let mut scene = Scene::new(&gpu).expect("compiled");
     let light = Light { direction: Vec3::new(-0.8, 0.5, 0.3), ambient: 0.25, ..Light::default() };
     scene.set_light(light).expect("valid");
-    let limits = EndlessLimits { nodes_per_frame: 128, ..EndlessLimits::default() };
-    let land = scene.add_terrain(&source.clone().with_limits(limits)).expect("added");
+    let land = scene.add_terrain(source).expect("added");
     let ground = scene.ground(land, at[0], at[1]).expect("valid").expect("ground").height;
     let eye = [at[0], ground + height, at[1]];
     let target = [to[0], ground + 0.8 * height, to[1]];
@@ -110,7 +121,7 @@ fn edited() {
     let files: Vec<FeatureFile> = files.into_iter().map(file).collect();
     let features = TerrainFeatures::new(&config, &files, FeatureMode::Keep).expect("valid");
     let recipe = TerrainRecipe { features, ..TerrainRecipe::new(config) };
-    let source = TerrainSource::from(recipe).with_limits(EndlessLimits::default());
+    let source = TerrainSource::from(recipe).with_limits(limits());
     check_view(&source, ([60.0, -40.0], 70.0), [60.0, 60.0], "endless_edited");
 }
 
@@ -129,6 +140,17 @@ fn mapped() {
     let layout = ElevationLayout { spacing: 8, first: [-150, -150], size };
     let heights = (0..size[0] * size[1]).map(height).collect();
     let tiles = ElevationTiles::new(&config, &ElevationMap { layout, heights, margin: 60 }).expect("valid");
-    let source = TerrainSource::endless(config).with_elevation(Arc::new(tiles));
+    let source = TerrainSource::endless(config).with_elevation(Arc::new(tiles)).with_limits(limits());
     check_view(&source, ([-1_200.0, -1_500.0], 420.0), [0.0, 0.0], "endless_mapped");
+}
+
+/// Slopes that have slid, and gullies that rain has dug.
+#[test]
+fn eroded() {
+    let thermal = Some(Thermal { iterations: 16, talus: 2.0 });
+    let hydraulic = Some(Hydraulic { iterations: 6, ..Hydraulic::default() });
+    let recipe = TerrainRecipe { thermal, hydraulic, ..TerrainRecipe::new(config()) };
+    let limits = EndlessLimits { erosion_depth: 4.0, view_distance: Some(1_000.0), ..limits() };
+    let source = TerrainSource::from(recipe).with_limits(limits);
+    check_view(&source, ([60.0, -40.0], 40.0), [160.0, 160.0], "endless_eroded");
 }

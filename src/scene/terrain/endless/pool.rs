@@ -9,12 +9,12 @@ use crate::scene::FRAMES_IN_FLIGHT;
 use crate::shared::render::scene_terrain::TerrainPatch;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::cover::TILES_PERIOD;
+use crate::terrain::erosion::{Eroding, ErosionPass};
 use crate::terrain::features::Features;
-use crate::terrain::fields::{Fields, after};
+use crate::terrain::fields::Fields;
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::hydraulic::reference::Flow;
-use crate::terrain::hydraulic::{HydraulicBuffers, HydraulicPass};
 use crate::terrain::levels::{GivenHeights, lattice_region};
 use crate::terrain::limit::{ErosionLimit, LimitBuffers, LimitPass};
 use crate::terrain::morph::{HeightMorphPass, Morph, MorphBuffers, MorphJob};
@@ -25,7 +25,6 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::regions::{RegionJob, RegionPass};
 use crate::terrain::remainder::remainder_reach;
 use crate::terrain::replace::{ReplaceBuffers, ReplacePass};
-use crate::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 use crate::terrain::window::{Region, Regions};
 use crate::{Error, InputError};
 
@@ -104,14 +103,12 @@ struct Blend {
 struct Erosion {
     recipe: Recipe,
     limit: ErosionLimit,
-    thermal: ThermalPass,
-    /// `None` for recipes without hydraulic erosion, for which this pipeline is not compiled.
-    hydraulic: Option<HydraulicPass>,
+    pass: ErosionPass,
     limiting: LimitPass,
     /// Regions with the samples around them that erosion needs. Its iterations alternate between both.
     windows: [Buffer<i32>; 2],
     /// Water and sediment, if there is hydraulic erosion.
-    flows: [Buffer<Flow>; 2],
+    flows: Option<[Buffer<Flow>; 2]>,
 }
 
 /// What the heights of a batch are made from.
@@ -332,21 +329,19 @@ impl Pool {
         let read = if blend.is_some() { 2 * words } else { words };
         let erosion = |limit: ErosionLimit| -> Result<Erosion, Error> {
             let points = BATCH * (regions.width as usize).pow(2);
-            let flows = if recipe.hydraulic.is_some() { points } else { 1 };
+            let heights = [
+                Buffer::new(gpu, "regions to erode", points)?,
+                Buffer::new(gpu, "regions to erode, in turn", points)?,
+            ];
+            let pass = ErosionPass::new(gpu, recipe)?;
+            let widest = Fields { heights: heights[0].clone(), width: regions.width, count: regions.count };
             Ok(Erosion {
+                flows: pass.flows(gpu, &widest)?,
                 recipe: recipe.clone(),
                 limit,
-                thermal: ThermalPass::new(gpu)?,
-                hydraulic: recipe.hydraulic.map(|_| HydraulicPass::new(gpu)).transpose()?,
+                pass,
                 limiting: LimitPass::new(gpu)?,
-                windows: [
-                    Buffer::new(gpu, "regions to erode", points)?,
-                    Buffer::new(gpu, "regions to erode, in turn", points)?,
-                ],
-                flows: [
-                    Buffer::new(gpu, "water and sediment", flows)?,
-                    Buffer::new(gpu, "water and sediment, in turn", flows)?,
-                ],
+                windows: heights,
             })
         };
         let erosion = size.erosion.map(erosion).transpose()?;
@@ -535,7 +530,7 @@ impl Pool {
         features: usize,
     ) -> Result<ErosionJob, Error> {
         let Erosion { recipe, limit, windows, flows, .. } = erosion;
-        let (count, width, scale) = (BATCH as u32, shape.region_width(), config.terrain_scale);
+        let (count, width) = (BATCH as u32, shape.region_width());
         let wide = width + 2 * recipe.apron(0);
         let regions = Regions { count, width: wide, coarser: 0 };
         let output = HeightBuffers { output: &windows[0], scratch: &self.scratch };
@@ -543,28 +538,8 @@ impl Pool {
         let mut both =
             windows.each_ref().map(|heights| Fields { heights: heights.clone(), width: wide, count });
         both[1].width -= 2;
-        let mut steps = Vec::new();
-        let thermal =
-            |thermal: Option<Thermal>, both: &mut [Fields; 2], steps: &mut Vec<Job>| -> Result<(), Error> {
-                let Some(thermal) = thermal.filter(|thermal| thermal.iterations > 0) else { return Ok(()) };
-                let buffers = ThermalBuffers { windows: &both[0], other: &both[1] };
-                steps.push(erosion.thermal.prepare(gpu, thermal, scale, buffers)?);
-                *both = after(both.clone(), thermal.iterations);
-                Ok(())
-            };
-        thermal(recipe.thermal, &mut both, &mut steps)?;
-        if let (Some(pass), Some(hydraulic)) = (&erosion.hydraulic, recipe.hydraulic) {
-            let buffers = HydraulicBuffers {
-                windows: &both[0],
-                other: &both[1],
-                flows: &flows[0],
-                other_flows: &flows[1],
-            };
-            steps.push(pass.prepare(gpu, hydraulic, scale, buffers)?);
-            both = after(both, hydraulic.iterations);
-        }
-        thermal(recipe.thermal_after, &mut both, &mut steps)?;
-        let [Fields { heights, .. }, _] = both;
+        let eroding = Eroding { windows: &both, flows: flows.as_ref() };
+        let (mut steps, Fields { heights, .. }) = erosion.pass.prepare(gpu, recipe, eroding)?;
         let points = BATCH * (width as usize).pow(2);
         let buffers = LimitBuffers { origins: &self.heights, heights: &heights };
         steps.push(erosion.limiting.prepare(gpu, *limit, points, buffers)?);
