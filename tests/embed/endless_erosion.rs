@@ -25,10 +25,10 @@ fn config() -> TerrainConfig {
 /// The most that erosion may move a height, in world units.
 const DEPTH: f64 = 0.25;
 
-/// Slopes of more than 20° slide, and rain digs.
+/// Slopes slide, and rain digs.
 fn recipe() -> TerrainRecipe {
-    let thermal = Some(Thermal { iterations: 8, talus: 8.0 });
-    let hydraulic = Some(Hydraulic { iterations: 3, ..Hydraulic::default() });
+    let thermal = Some(Thermal { iterations: 3, talus: 4.0 });
+    let hydraulic = Some(Hydraulic { iterations: 2, ..Hydraulic::default() });
     TerrainRecipe { thermal, hydraulic, ..TerrainRecipe::new(config()) }
 }
 
@@ -189,7 +189,7 @@ fn eroded_ground_is_closed_while_nodes_are_missing() {
         erosion_depth: 6.0,
         ..EndlessLimits::default()
     };
-    let thermal = Some(Thermal { iterations: 24, talus: 1.0 });
+    let thermal = Some(Thermal { iterations: 12, talus: 1.0 });
     let recipe = TerrainRecipe { thermal, ..TerrainRecipe::new(config()) };
     let size = [320, 180];
     let mut world = World::of(&source(recipe).with_limits(limits), size);
@@ -322,7 +322,7 @@ fn erosion_out_of_bounds_is_refused() {
     };
     let tiles = ElevationTiles::new(&config(), &map).expect("valid");
     assert_eq!(refused(source(recipe()).with_elevation(Arc::new(tiles))), "recipe");
-    let many = Some(Thermal { iterations: 126, talus: 20.0 });
+    let many = Some(Thermal { iterations: 127, talus: 20.0 });
     assert_eq!(refused(source(TerrainRecipe { thermal: many, ..recipe() })), "iterations");
     let target = source(recipe()).with_target(TerrainRecipe::new(config()), TerrainMorph::default());
     assert_eq!(refused(target), "recipe");
