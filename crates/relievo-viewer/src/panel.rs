@@ -52,11 +52,12 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
 
 /// The sections of the panel.
 fn sections(viewer: &mut Viewer, ui: &mut Ui) {
-    ui.add_space(2.0);
-    scene::show(viewer, ui);
-    controls::show(viewer, ui);
-    plots::show(viewer, ui);
-    ui.add_space(12.0);
+    // The bar that scrolls has room beside them.
+    Frame::new().inner_margin(egui::Margin { right: 8, top: 2, bottom: 12, left: 0 }).show(ui, |ui| {
+        scene::show(viewer, ui);
+        controls::show(viewer, ui);
+        plots::show(viewer, ui);
+    });
 }
 
 /// A section with a title that folds.
@@ -101,6 +102,9 @@ fn status(viewer: &Viewer) -> String {
     if let Some(step) = viewer.step() {
         return format!("{step} …");
     }
+    if let Some(said) = viewer.said() {
+        return said.to_owned();
+    }
     if let Some((why, seconds)) = viewer.shown.as_ref().and_then(crate::shown::Shown::waits) {
         return format!("the server does not answer; it is asked again in {seconds:.0} s ({why})");
     }
@@ -127,7 +131,12 @@ fn status(viewer: &Viewer) -> String {
         true => format!(" · {} bytes came", grouped(viewer.bytes() as u64)),
         false => String::new(),
     };
-    format!("{time}{} triangles · {bound}{came}", grouped(last.triangles as u64))
+    // The device tells the number some frames later.
+    let triangles = match last.triangles as u64 {
+        0 => String::new(),
+        count => format!("{} triangles · ", grouped(count)),
+    };
+    format!("{time}{triangles}{bound}{came}")
 }
 
 /// A whole number with commas between groups of three digits.

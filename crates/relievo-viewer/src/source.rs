@@ -82,7 +82,10 @@ pub(crate) fn answered(status: u16) -> io::Error {
 impl Source for Site {
     fn read<'a>(&'a self, name: &'a Path) -> Reading<'a> {
         let url = beside(&self.url, name);
-        Box::pin(async move { fetched(&url).await.map(Into::into) })
+        Box::pin(async move {
+            let fetched = fetched(&url).await.map(Into::into);
+            fetched.map_err(|error| io::Error::new(error.kind(), format!("{error} ({url})")))
+        })
     }
 
     fn url(&self, name: &Path) -> Option<String> {

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use relievo::gpu::{Gpu, GpuError};
+use relievo::render::Offscreen;
 use relievo::{Error, InputError};
 use relievo_lab::measure::DistanceSweepReport;
 use web_time::Instant;
@@ -33,6 +34,9 @@ const IN_FLIGHT: u32 = 2;
 
 /// Number of frames after a change: the device tells only some frames later what it drew.
 const TOLD: u32 = 8;
+
+/// How long the status line says what was done, in seconds.
+const SAID: f64 = 4.0;
 
 /// Longest step of the scene's time, in seconds.
 const LONGEST: f64 = 0.25;
@@ -77,6 +81,8 @@ struct Loading {
     task: Task,
     purpose: Purpose,
     name: String,
+    /// What somebody wrote to open it.
+    address: Option<String>,
     step: String,
     began: Instant,
     /// Number of transfers that had ended before.
@@ -161,6 +167,8 @@ pub struct Viewer {
     from_viewer: Receiver<Request>,
     /// The time of the host's last frame, and of its last input, in seconds.
     now: f64,
+    /// What was done last, and until when the status line says so.
+    said: Option<(String, f64)>,
     last_input: f64,
     is_resting: bool,
     /// Frames that are still due after the last change.
@@ -208,6 +216,7 @@ impl Viewer {
             last_input: 0.0,
             is_resting: false,
             due: TOLD,
+            said: None,
             began: Instant::now(),
             last_paint: None,
             in_flight: Arc::default(),
@@ -305,7 +314,6 @@ impl Viewer {
     /// shown.
     pub fn open(&mut self, name: &str, source: Arc<dyn Source>) {
         self.notice = None;
-        self.compares = false;
         self.load(Purpose::Open, PathBuf::from(name), source, None);
     }
 
@@ -313,8 +321,10 @@ impl Viewer {
     pub fn open_address(&mut self, address: &str) {
         match (self.locate)(address) {
             Ok((name, source)) => {
-                self.settings.opened(address);
                 self.open(&name, source);
+                if let Some(loading) = &mut self.loading {
+                    loading.address = Some(address.to_owned());
+                }
             }
             Err(error) => self.notice = Some(error.to_string()),
         }
@@ -361,7 +371,7 @@ impl Viewer {
         let egui = self.egui.clone();
         let task = Task::start(job, move || egui.request_repaint());
         let (step, began, arrivals) = ("starting".to_owned(), Instant::now(), self.arrivals.len());
-        self.loading = Some(Loading { task, purpose, name: shown, step, began, arrivals });
+        self.loading = Some(Loading { task, purpose, name: shown, address: None, step, began, arrivals });
     }
 
     /// What the host has to do, once each.
@@ -370,7 +380,17 @@ impl Viewer {
             self.remembered = self.settings.clone();
             let _ = self.to_host.send(Request::Remember(self.settings.clone()));
         }
-        self.from_viewer.try_iter().collect()
+        let requests: Vec<_> = self.from_viewer.try_iter().collect();
+        for request in &requests {
+            let said = match request {
+                Request::Save { name, .. } => format!("saved {name}"),
+                Request::Copy(_) => "copied".to_owned(),
+                Request::Remember(_) => continue,
+            };
+            self.said = Some((said, self.now + SAID));
+            self.egui.request_repaint_after(Duration::from_secs_f64(SAID));
+        }
+        requests
     }
 
     pub(crate) fn request(&self, request: Request) {
@@ -462,6 +482,16 @@ impl Viewer {
             .is_some_and(|shown| shown.clock.plays && shown.clock.follows && shown.time() < shown.path_end())
     }
 
+    /// Whether another scene is being opened.
+    fn is_leaving(&self) -> bool {
+        self.loading.as_ref().is_some_and(|loading| loading.purpose == Purpose::Open)
+    }
+
+    /// What the viewer did last, for some seconds.
+    pub(crate) fn said(&self) -> Option<&str> {
+        self.said.as_ref().filter(|(_, end)| self.now < *end).map(|(said, _)| said.as_str())
+    }
+
     /// Whether the viewer draws nothing because nobody is there.
     pub fn is_resting(&self) -> bool {
         self.is_resting
@@ -475,6 +505,9 @@ impl Viewer {
         };
         if self.is_resting {
             return None;
+        }
+        if self.is_leaving() {
+            return Some(repaint.min(Duration::from_millis(50)));
         }
         let is_moving = shown.is_moving() && !self.experiment.is_running();
         if is_moving || shown.stage.ready() < 1.0 || self.steps || self.wants_picture || self.due > 0 {
@@ -504,6 +537,9 @@ impl Viewer {
                 }
                 News::Ready(ready) => {
                     let (purpose, name) = (loading.purpose, loading.name.clone());
+                    if let Some(address) = loading.address.take() {
+                        self.settings.opened(&address);
+                    }
                     if purpose == Purpose::Open && self.shown.is_some() {
                         // Numbers of the scene before count no more.
                         (self.began, self.first_picture) = (loading.began, None);
@@ -528,6 +564,7 @@ impl Viewer {
                 let mut shown = Shown::new(name, ready)?;
                 std::mem::take(&mut self.start).apply(&mut shown);
                 self.history = History::default();
+                self.compares = false;
                 self.shown = Some(shown);
             }
         }
@@ -619,9 +656,15 @@ impl Viewer {
     fn record_scene(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<bool, Error> {
         #[cfg(not(target_arch = "wasm32"))]
         let _ = self.gpu.device().poll(wgpu::PollType::Poll);
+        let is_leaving = self.is_leaving();
         let (Some(shown), Some(Picture { size, .. })) = (&mut self.shown, self.picture) else {
             return Ok(false);
         };
+        // A scene that is about to go leaves the device to the next one, unless its picture gets another size.
+        let is_whole = |target: &Offscreen| target.size() == size;
+        if is_leaving && shown.stage.target(self.settings.colors).is_some_and(is_whole) {
+            return Ok(false);
+        }
         if self.is_resting || self.in_flight.load(Ordering::Acquire) >= IN_FLIGHT {
             return Ok(false);
         }

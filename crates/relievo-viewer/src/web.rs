@@ -32,6 +32,10 @@ const MESSAGE: &str = "message";
 /// Milliseconds until the next attempt where the canvas had no texture.
 const PAUSE: Duration = Duration::from_millis(50);
 
+/// The page ends if more devices than this are lost within this time.
+const MOST_LOSSES: usize = 4;
+const OFTEN: Duration = Duration::from_secs(60);
+
 thread_local! {
     /// What the viewer shows, as JSON.
     static STATE: RefCell<String> = RefCell::new("{}".to_owned());
@@ -126,9 +130,9 @@ pub(crate) async fn fetched(address: &str) -> io::Result<Vec<u8>> {
     Ok(Uint8Array::new(&body).to_vec())
 }
 
-/// The scenes of the server that the page comes from, as its catalog lists them. It is asked for them at the first call, and the
-/// answer wakes the page.
-pub(crate) fn offered(egui: &egui::Context) -> Vec<String> {
+/// The scenes and models of the server that the page comes from, as its catalog lists them: names and addresses. It is asked for them
+/// at the first call, and the answer wakes the page.
+pub(crate) fn offered(egui: &egui::Context) -> Vec<(String, String)> {
     let known = OFFERED.with_borrow_mut(|offered| {
         let known = offered.clone();
         offered.get_or_insert_default();
@@ -140,9 +144,14 @@ pub(crate) fn offered(egui: &egui::Context) -> Vec<String> {
             // A page that no such server serves has none.
             let Ok(text) = fetched(&catalog).await else { return };
             let Ok(catalog) = serde_json::from_slice::<serde_json::Value>(&text) else { return };
-            let scenes = catalog["scenes"].as_array().into_iter().flatten();
-            let names = scenes.filter_map(|name| Some(name.as_str()?.to_owned())).collect();
-            OFFERED.set(Some(names));
+            let list = |name: &str| catalog[name].as_array().cloned().unwrap_or_default().into_iter();
+            let scenes = list("scenes")
+                .filter_map(|name| Some((name.as_str()?.to_owned(), name.as_str()?.to_owned())));
+            // A model that is not ready has no package.
+            let models = list("models").filter_map(|model| {
+                Some((model["name"].as_str()?.to_owned(), model["package"].as_str()?.to_owned()))
+            });
+            OFFERED.set(Some(scenes.chain(models).collect()));
             egui.request_repaint();
         });
     }
@@ -150,8 +159,8 @@ pub(crate) fn offered(egui: &egui::Context) -> Vec<String> {
 }
 
 thread_local! {
-    /// Scenes of the server, once somebody has asked for them.
-    static OFFERED: RefCell<Option<Vec<String>>> = const { RefCell::new(None) };
+    /// Scenes and models of the server, once it has been asked for them.
+    static OFFERED: RefCell<Option<Vec<(String, String)>>> = const { RefCell::new(None) };
 }
 
 /// Completes after so many seconds.
@@ -255,6 +264,8 @@ struct Running {
     viewer: Option<Shown>,
     /// Whether another device is being opened.
     recovers: bool,
+    /// When devices were lost.
+    losses: Vec<web_time::Instant>,
     /// Events, and whether a frame was due, while the viewer was away.
     missed: Vec<WindowEvent>,
     is_due: bool,
@@ -415,7 +426,7 @@ impl Page {
         let Some(running) = &mut self.running else { return };
         running.take_back();
         running.is_due = running.viewer.is_none();
-        let Running { window, viewer: Some(shown), recovers, .. } = running else { return };
+        let Running { window, viewer: Some(shown), recovers, losses, .. } = running else { return };
         if *recovers {
             return;
         }
@@ -430,6 +441,13 @@ impl Page {
             Ok(None) => events.set_control_flow(ControlFlow::Wait),
             Err(error) if Viewer::is_loss(&error) => {
                 *recovers = true;
+                losses.retain(|moment| moment.elapsed() < OFTEN);
+                losses.push(web_time::Instant::now());
+                if losses.len() > MOST_LOSSES {
+                    return fail(
+                        "The device was lost again and again. Another browser, or another graphics driver, may keep it.",
+                    );
+                }
                 let (window, proxy) = (window.clone(), self.proxy.clone());
                 spawn_local(async move {
                     let told = match opened(window).await {
@@ -512,8 +530,14 @@ impl ApplicationHandler<Told> for Page {
             };
             let _ = proxy.send_event(told);
         });
-        self.running =
-            Some(Running { window, viewer: None, recovers: false, missed: Vec::new(), is_due: false });
+        self.running = Some(Running {
+            window,
+            viewer: None,
+            recovers: false,
+            losses: Vec::new(),
+            missed: Vec::new(),
+            is_due: false,
+        });
     }
 
     fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {

@@ -233,7 +233,7 @@ fn bones(viewer: &mut Viewer, ui: &mut Ui) {
     }
     if let Some(all) = shown.stage.world.scene.statistics() {
         let bones: u32 = all.characters.iter().map(|character| character.bones).sum();
-        ui.label(format!("{} bones interpolated in all", grouped(bones.into())));
+        ui.label(format!("bones interpolated in all: {}", grouped(bones.into())));
     }
 }
 

@@ -122,6 +122,7 @@ pub fn list(viewer: &mut Viewer, egui: &Context) {
         .open(&mut viewer.shows_keys)
         .collapsible(false)
         .resizable(false)
+        .default_size([520.0, 560.0])
         .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0])
         .show(egui, |ui| {
             egui::ScrollArea::both().show(ui, |ui| {

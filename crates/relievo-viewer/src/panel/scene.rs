@@ -16,7 +16,6 @@ const TRANSFERS: usize = 12;
 
 pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     section(ui, "Scene", true, |ui| {
-        summary(viewer, ui);
         open(viewer, ui);
         save(viewer, ui);
         ui.horizontal(|ui| {
@@ -27,6 +26,8 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
                 }
             }
         });
+        // Below what can be pressed, since it grows while a scene is opened.
+        summary(viewer, ui);
     });
     section(ui, "Network", false, |ui| network(viewer, ui));
 }
@@ -51,12 +52,6 @@ fn summary(viewer: &Viewer, ui: &mut Ui) {
     for line in objects {
         ui.add(egui::Label::new(egui::RichText::new(line).small()).truncate());
     }
-    if let Some(loading) = viewer.step() {
-        ui.horizontal(|ui| {
-            ui.spinner();
-            ui.label(loading);
-        });
-    }
 }
 
 fn open(viewer: &mut Viewer, ui: &mut Ui) {
@@ -73,6 +68,8 @@ fn open(viewer: &mut Viewer, ui: &mut Ui) {
             response.request_focus();
         }
     });
+    #[cfg(target_arch = "wasm32")]
+    let offered = crate::web::offered(ui.ctx());
     egui::ComboBox::from_id_salt("examples")
         .selected_text("Examples and recent files")
         .width(ui.available_width())
@@ -83,9 +80,9 @@ fn open(viewer: &mut Viewer, ui: &mut Ui) {
                 }
             }
             #[cfg(target_arch = "wasm32")]
-            for name in crate::web::offered(ui.ctx()) {
+            for (name, address) in offered {
                 if ui.selectable_label(false, format!("{name}, from this server")).clicked() {
-                    wanted = Some(name);
+                    wanted = Some(address);
                 }
             }
             let is_example = |name: &String| EXAMPLES.iter().any(|(example, ..)| example == name);
