@@ -2,7 +2,7 @@
 //!
 //! A window is a patch with the samples around it that erosion needs. Together, the buffers never hold more than two `i32` per
 //! sample of the windows, or ten with hydraulic erosion. These numbers include the results. Each stage frees the data that the
-//! next stage does not read. An index of features takes two more bits per sample and level.
+//! next stage does not read, but for the flow of hydraulic erosion. An index of features takes two more bits per sample and level.
 
 use crate::Error;
 use crate::gpu::{Gpu, GpuError};
@@ -11,7 +11,7 @@ use crate::terrain::config::Border;
 use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::erosion::{Eroding, ErosionPass};
 use crate::terrain::features::FeatureIndex;
-use crate::terrain::fields::{Fields, after};
+use crate::terrain::fields::{Fields, REMEDY, after};
 use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
@@ -233,9 +233,9 @@ impl Generator {
             gpu.run_async("terrain/despike", |encoder| job.record(encoder)).await?;
             both = after(both, 1);
         }
-        let flows = self.erosion.flows(gpu, &both[0])?;
+        let flows = self.erosion.flows(gpu, &both[0]).map_err(|error| error.with_remedy(REMEDY))?;
         let eroding = Eroding { windows: &both, flows: flows.as_ref() };
-        let (jobs, windows) = self.erosion.prepare(gpu, &self.recipe, eroding)?;
+        let (jobs, windows) = self.erosion.prepare(gpu, eroding)?;
         for job in jobs {
             job.run_async(gpu).await?;
         }

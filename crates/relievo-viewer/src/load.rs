@@ -18,7 +18,7 @@ use relievo_scene_file::{BuiltIns, SceneFile, World, WorldKind};
 
 use crate::document::{Content, Document};
 use crate::eye::Eye;
-use crate::images;
+use crate::images::{self, Decoded};
 use crate::source::{Source, Throttled, sleep};
 use crate::stage::Stage;
 use crate::streaming::{Fetching, Streaming};
@@ -76,6 +76,8 @@ pub struct Arrival {
 pub(crate) enum News {
     /// What it does now.
     Step(String),
+    /// From now on, the device is busy with the scene.
+    Building,
     Arrived(Arrival),
     Ready(Box<Ready>),
     Failed(String),
@@ -157,12 +159,12 @@ impl Teller {
 }
 
 async fn run(job: Job, teller: Teller) {
-    let loader = Loader { teller: &teller, gpu: job.gpu.clone(), files: RefCell::default() };
+    let (files, decoded) = Default::default();
+    let loader = Loader { teller: &teller, gpu: job.gpu.clone(), files, decoded };
     let news = match loader.load(job).await {
         Ok(ready) => News::Ready(Box::new(ready)),
         Err(error) => News::Failed(error.to_string()),
     };
-    images::forget();
     teller.tell(news);
 }
 
@@ -170,9 +172,19 @@ struct Loader<'a> {
     teller: &'a Teller,
     gpu: Gpu,
     files: RefCell<HashMap<PathBuf, Arc<[u8]>>>,
+    /// Files whose images were decoded beforehand.
+    decoded: RefCell<Decoded>,
 }
 
 impl Loader<'_> {
+    /// Decodes the images that are noted. Returns whether there were some.
+    async fn decode(&self) -> bool {
+        let files = images::decode(&self.gpu).await;
+        let has_some = !files.is_empty();
+        self.decoded.borrow_mut().0.extend(files);
+        has_some
+    }
+
     async fn load(&self, job: Job) -> Result<Ready, Error> {
         let Job { name, source, rate, changed, fetching, .. } = job;
         let throttled = Throttled { source: &*source, rate };
@@ -207,6 +219,7 @@ impl Loader<'_> {
             .retried(&throttled, "preparing levels of detail", |read| file.load(read, &built_ins))
             .await
             .map_err(in_file)?;
+        self.teller.tell(News::Building);
         self.teller.step("building the scene on the device").await;
         let world = loaded.build_async(&self.gpu).await.map_err(|error| match error {
             Error::Input(source) => in_file(source),
@@ -229,10 +242,11 @@ impl Loader<'_> {
     ) -> Result<Ready, Error> {
         self.teller.step("waiting for what the scene needs").await;
         let loaded = streaming.begin(&self.gpu, |why| _ = self.waits(why)).await?;
+        self.teller.tell(News::Building);
         self.teller.step("building the scene on the device").await;
         let mut world = loaded.build_async(&self.gpu).await?;
         self.teller.step("waiting for the coarsest level").await;
-        streaming.appear(&mut world, |why| _ = self.waits(why)).await?;
+        streaming.appear(&self.gpu, &mut world, |why| _ = self.waits(why)).await?;
         for arrival in streaming.arrivals() {
             self.teller.tell(News::Arrived(arrival));
         }
@@ -357,7 +371,7 @@ impl Loader<'_> {
         loop {
             self.teller.step(what).await;
             self.files.borrow().values().for_each(|file| images::note(file));
-            images::decode(&self.gpu).await;
+            self.decode().await;
             let lacking = RefCell::new(BTreeSet::new());
             let read = |name: &Path| match (self.files.borrow().get(name), refused.get(name)) {
                 (Some(bytes), _) => Ok(bytes.to_vec()),
@@ -368,11 +382,10 @@ impl Loader<'_> {
                 }
             };
             let done = work(&read);
-            if images::decode(&self.gpu).await {
-                continue;
-            }
+            // Also those whose texels are read later.
+            let has_decoded = self.decode().await;
             let lacking = lacking.into_inner();
-            if lacking.is_empty() || done.is_ok() {
+            if done.is_ok() || (lacking.is_empty() && !has_decoded) {
                 return done;
             }
             for name in lacking {

@@ -20,7 +20,7 @@ use relievo_samples::Samples;
 use relievo_scene_file::{LoadedScene, SceneFile, World};
 use web_time::Instant;
 
-use crate::images;
+use crate::images::{self, Decoded};
 use crate::load::Arrival;
 use crate::source::sleep;
 
@@ -207,6 +207,8 @@ pub(crate) struct Streaming {
     began: Instant,
     /// Packages that cannot be fetched, and were told.
     told: BTreeSet<PathBuf>,
+    /// Files whose images were decoded beforehand.
+    decoded: Decoded,
 }
 
 impl Streaming {
@@ -229,7 +231,12 @@ impl Streaming {
             Some((end, file.package_name(path)?.to_owned()))
         };
         fetcher.transport_mut().names = file.packages().iter().filter_map(named).collect();
-        Self { scene: StreamedScene::with_file(file, url, fetcher), began, told: BTreeSet::new() }
+        Self {
+            scene: StreamedScene::with_file(file, url, fetcher),
+            began,
+            told: BTreeSet::new(),
+            decoded: Decoded::default(),
+        }
     }
 
     /// Waits for everything but the packages. `wait` is told what is wrong while the server does not answer.
@@ -238,9 +245,15 @@ impl Streaming {
     /// As for [`StreamedScene::begin`].
     pub async fn begin(&mut self, gpu: &Gpu, wait: impl Fn(&str)) -> Result<LoadedScene, Error> {
         loop {
+            // All at once: the scene stops at the first image that it lacks.
+            self.scene.files().for_each(images::note);
+            self.decoded.0.extend(images::decode(gpu).await);
             let loaded = self.scene.begin(self.began.elapsed(), &Samples).map(|loaded| loaded.cloned());
+            let files = images::decode(gpu).await;
+            let has_decoded = !files.is_empty();
+            self.decoded.0.extend(files);
             // With an image that it lacked, the scene may begin.
-            if loaded.is_err() && images::decode(gpu).await {
+            if loaded.is_err() && has_decoded {
                 continue;
             }
             if let Some(loaded) = loaded? {
@@ -257,9 +270,9 @@ impl Streaming {
     ///
     /// # Errors
     /// As for [`StreamedScene::update_async`]; [`Error`] if nothing of the scene can be fetched.
-    pub async fn appear(&mut self, world: &mut World, wait: impl Fn(&str)) -> Result<(), Error> {
+    pub async fn appear(&mut self, gpu: &Gpu, world: &mut World, wait: impl Fn(&str)) -> Result<(), Error> {
         while world.objects.is_empty() {
-            self.update(world, &[]).await?;
+            self.update(gpu, world, &[]).await?;
             if let Some(why) = &self.scene.fetcher().transport().failure {
                 wait(why);
             }
@@ -281,9 +294,16 @@ impl Streaming {
     ///
     /// # Errors
     /// As for [`StreamedScene::update_async`].
-    pub async fn update(&mut self, world: &mut World, views: &[&View]) -> Result<bool, Error> {
+    pub async fn update(&mut self, gpu: &Gpu, world: &mut World, views: &[&View]) -> Result<bool, Error> {
         let now = self.now();
-        self.scene.update_async(world, views, now).await
+        self.scene.receive(now);
+        // The texels of a package's images are read when it is shown.
+        self.decoded.0.extend(images::decode(gpu).await);
+        let shown = self.scene.show_async(world, views).await;
+        if self.is_settled() {
+            self.decoded = Decoded::default();
+        }
+        shown
     }
 
     fn now(&self) -> Duration {

@@ -16,6 +16,7 @@ use web_time::Instant;
 use crate::experiment::Experiment;
 use crate::eye::Eye;
 use crate::history::{History, Sample};
+use crate::images;
 use crate::load::{Arrival, Changed, Job, News, Ready, Task};
 use crate::settings::Settings;
 use crate::shown::{Clock, Shown};
@@ -84,6 +85,8 @@ struct Loading {
     /// What somebody wrote to open it.
     address: Option<String>,
     step: String,
+    /// Whether the device is busy with it.
+    builds: bool,
     began: Instant,
     /// Number of transfers that had ended before.
     arrivals: usize,
@@ -185,6 +188,7 @@ pub struct Viewer {
 impl Viewer {
     /// A viewer on a device, for targets of this format, which should not convert to sRGB by itself.
     pub fn new(gpu: Gpu, format: wgpu::TextureFormat, settings: Settings) -> Self {
+        images::register();
         let egui = egui::Context::default();
         theme::dress(&egui, settings.theme);
         let (to_host, from_viewer) = channel();
@@ -371,7 +375,8 @@ impl Viewer {
         let egui = self.egui.clone();
         let task = Task::start(job, move || egui.request_repaint());
         let (step, began, arrivals) = ("starting".to_owned(), Instant::now(), self.arrivals.len());
-        self.loading = Some(Loading { task, purpose, name: shown, address: None, step, began, arrivals });
+        self.loading =
+            Some(Loading { task, purpose, name: shown, address: None, step, builds: false, began, arrivals });
     }
 
     /// What the host has to do, once each.
@@ -380,17 +385,7 @@ impl Viewer {
             self.remembered = self.settings.clone();
             let _ = self.to_host.send(Request::Remember(self.settings.clone()));
         }
-        let requests: Vec<_> = self.from_viewer.try_iter().collect();
-        for request in &requests {
-            let said = match request {
-                Request::Save { name, .. } => format!("saved {name}"),
-                Request::Copy(_) => "copied".to_owned(),
-                Request::Remember(_) => continue,
-            };
-            self.said = Some((said, self.now + SAID));
-            self.egui.request_repaint_after(Duration::from_secs_f64(SAID));
-        }
-        requests
+        self.from_viewer.try_iter().collect()
     }
 
     pub(crate) fn request(&self, request: Request) {
@@ -430,7 +425,8 @@ impl Viewer {
 
     /// Whether the scene comes from a site, level by level, and something may still come.
     pub fn is_streaming(&self) -> bool {
-        !self.is_resting && self.shown.as_ref().is_some_and(|shown| shown.streaming.is_some())
+        let has_streaming = self.shown.as_ref().is_some_and(|shown| shown.streaming.is_some());
+        has_streaming && !self.is_resting && !self.is_leaving()
     }
 
     /// Shows what has arrived of a scene of a site. [`Viewer::frame`] calls it natively. A page calls it between frames, because a
@@ -482,9 +478,15 @@ impl Viewer {
             .is_some_and(|shown| shown.clock.plays && shown.clock.follows && shown.time() < shown.path_end())
     }
 
-    /// Whether another scene is being opened.
+    /// Whether the device builds another scene, which takes the place of this one.
     fn is_leaving(&self) -> bool {
-        self.loading.as_ref().is_some_and(|loading| loading.purpose == Purpose::Open)
+        self.loading.as_ref().is_some_and(|loading| loading.purpose == Purpose::Open && loading.builds)
+    }
+
+    /// Lets the status line say for some seconds what the host has done.
+    pub fn say(&mut self, said: impl Into<String>) {
+        self.said = Some((said.into(), self.now + SAID));
+        self.egui.request_repaint();
     }
 
     /// What the viewer did last, for some seconds.
@@ -499,6 +501,8 @@ impl Viewer {
 
     /// The time until the next frame.
     fn wait(&self, repaint: Duration) -> Option<Duration> {
+        let said = self.said.as_ref().map(|(_, end)| end - self.now).filter(|left| *left > 0.0);
+        let repaint = repaint.min(said.map_or(Duration::MAX, Duration::from_secs_f64));
         let Some(shown) = &self.shown else {
             let waits = self.loading.is_some().then_some(Duration::from_millis(50));
             return if repaint < Duration::MAX { Some(repaint) } else { waits };
@@ -528,6 +532,7 @@ impl Viewer {
             let Some(news) = loading.task.next() else { return };
             match news {
                 News::Step(step) => loading.step = step,
+                News::Building => loading.builds = true,
                 News::Arrived(arrival) => self.arrivals.push(arrival),
                 News::Failed(why) => {
                     if loading.purpose == Purpose::Compare {

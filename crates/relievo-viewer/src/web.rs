@@ -66,7 +66,6 @@ pub fn ask() -> u32 {
 /// Opens the viewer in the page's canvas.
 pub fn start() {
     std::panic::set_hook(Box::new(|panic| fail(&format!("The viewer ended: {panic}"))));
-    crate::images::register();
     let events = match EventLoop::<Told>::with_user_event().build() {
         Ok(events) => events,
         Err(error) => return fail(&error.to_string()),
@@ -149,7 +148,8 @@ pub(crate) fn offered(egui: &egui::Context) -> Vec<(String, String)> {
                 .filter_map(|name| Some((name.as_str()?.to_owned(), name.as_str()?.to_owned())));
             // A model that is not ready has no package.
             let models = list("models").filter_map(|model| {
-                Some((model["name"].as_str()?.to_owned(), model["package"].as_str()?.to_owned()))
+                let name = model["name"].as_str().filter(|_| model["package"].is_string())?;
+                Some((name.to_owned(), format!("models/{name}.rlv")))
             });
             OFFERED.set(Some(scenes.chain(models).collect()));
             egui.request_repaint();
@@ -352,12 +352,14 @@ impl Shown {
     fn serve(&mut self) {
         for request in self.viewer.requests() {
             match request {
-                Request::Copy(text) => copy(&text),
-                Request::Save { name, bytes } => {
-                    if let Err(error) = download(&name, &bytes) {
-                        self.viewer.tell(format!("{name}: {}", other(&error)));
-                    }
+                Request::Copy(text) => {
+                    copy(&text);
+                    self.viewer.say("copied");
                 }
+                Request::Save { name, bytes } => match download(&name, &bytes) {
+                    Ok(()) => self.viewer.say(format!("{name} is among the downloads")),
+                    Err(error) => self.viewer.tell(format!("{name}: {}", other(&error))),
+                },
                 Request::Remember(settings) => {
                     // A browser may keep nothing for this page.
                     let _ = storage().map(|storage| storage.set_item(STORED, &settings.to_json()));

@@ -235,6 +235,7 @@ impl Running {
                     self.input.set_clipboard_text(text.clone());
                     // A terminal has it too, where there is no clipboard.
                     println!("{text}");
+                    self.viewer.say("copied");
                     Ok(())
                 }
                 Request::Save { name, bytes } => {
@@ -242,6 +243,7 @@ impl Running {
                     let written = relievo_lab::files::write_file(&path, &bytes);
                     if written.is_ok() {
                         println!("{}", path.display());
+                        self.viewer.say(format!("saved {}", path.display()));
                         self.window.set_title(&format!("relievo: saved {}", path.display()));
                     }
                     written

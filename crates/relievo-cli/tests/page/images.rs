@@ -1,7 +1,11 @@
 //! Images that the browser decodes, in each place where a scene may have them.
 
+use std::path::Path;
+
 use image::codecs::jpeg::JpegEncoder;
 use image::{ImageFormat, Rgb, RgbImage, Rgba, RgbaImage};
+use relievo::asset::ModelFile;
+use relievo::ops::skinning::cook;
 use serde_json::json;
 
 /// The scene: two textured rectangles, and a wall with a relief. The quality is full detail.
@@ -39,6 +43,28 @@ pub fn files() -> Vec<(&'static str, Vec<u8>)> {
         ("leaf.webp", webp.into_inner()),
         ("bumps.jpg", jpeg(&bumps)),
     ]
+}
+
+/// The scene of a server, whose package has the images of `photos.glb`.
+pub const STREAMED: &str = r#"{
+  "meshes": [{ "file": "photos.rlv", "instances": [{ "at": [0, 0, 0] }] }],
+  "light": { "direction": [0.3, 0.5, 1], "ambient": 0.5 },
+  "camera": { "at": [0, 0, 3.5], "look": [0, 0, 0] },
+  "quality": { "pixels": 0 }
+}"#;
+
+/// `photos.glb` as a package, which keeps the images as they are.
+pub fn package() -> Vec<u8> {
+    let files = files();
+    let named = |name: &str| files.iter().find(|(own, _)| *own == name).map(|(_, bytes)| bytes.clone());
+    let read = |path: &Path| path.to_str().and_then(named).ok_or_else(|| std::io::ErrorKind::NotFound.into());
+    let (name, bytes) = ("photos.glb", named("photos.glb").expect("made"));
+    let model = ModelFile::from_bytes_beside(Path::new(name), &bytes, &read).expect("a model");
+    let package = cook(&model, &mut |_| std::ops::ControlFlow::Continue(()));
+    let package = package.expect("cooked").expect("not broken off");
+    let has = |start: &[u8]| package.windows(start.len()).any(|part| part == start);
+    assert!(has(b"\xff\xd8\xff") && has(b"WEBP"));
+    package
 }
 
 fn jpeg(image: &RgbImage) -> Vec<u8> {

@@ -81,6 +81,8 @@ impl Server {
                 "served/walk.json",
                 "--scene",
                 "served/crowd.json",
+                "--scene",
+                "served/photos.json",
                 "--listen",
             ])
             .arg(format!("127.0.0.1:{port}"))
@@ -120,6 +122,7 @@ fn plan(folder: &Path, port: u16) -> Vec<Value> {
     let case =
         |name: &str, query: &str, size: [u32; 2]| json!({ "name": name, "query": query, "size": size });
     let site = format!("scene=http://127.0.0.1:{port}/scenes/walk.json&time=0");
+    let photos = site.replace("walk", "photos");
     let mut plan = vec![
         case("large", "scene=/scene.json&time=0", SIZES[0]),
         case("small", "scene=/scene.json&time=0", SIZES[1]),
@@ -135,6 +138,7 @@ fn plan(folder: &Path, port: u16) -> Vec<Value> {
         case("typed", "scene=/typed.gltf", [320, 240]),
         case("panel", "scene=/corner.obj", [640, 480]),
         case("photos", "scene=/photos.json&time=0", SIZES[0]),
+        case("photos of a server", &photos, SIZES[0]),
     ];
     plan[0]["key"] = json!(["KeyL", "l"]);
     plan[0]["stays"] = json!(true);
@@ -152,6 +156,7 @@ fn plan(folder: &Path, port: u16) -> Vec<Value> {
     plan[9]["drops"] = json!(["dropped.json", "corner.obj"]);
     plan[11]["fails"] = json!(true);
     plan[12]["slides"] = json!(true);
+    plan[14]["streams"] = json!(true);
     plan
 }
 
@@ -166,6 +171,8 @@ fn served() -> (tempfile::TempDir, u16) {
         ("creature.rlv", creature),
         ("walk.json", walk),
         ("crowd.json", crowd),
+        ("photos.json", images::STREAMED.as_bytes()),
+        ("photos.rlv", &images::package()),
     ] {
         std::fs::write(folder.path().join("served").join(name), bytes).expect("written");
     }
@@ -322,7 +329,7 @@ fn swiftshader(folder: &Path) -> Command {
 
 /// A scene, drawn natively on Chromium's software adapter.
 fn native(folder: &Path, scene: &str, size: [u32; 2]) -> RgbaImage {
-    let out = folder.join(format!("native-{scene}-{}.png", size[0]));
+    let out = folder.join(format!("native-{}-{}.png", scene.replace('/', "-"), size[0]));
     let size = format!("{}x{}", size[0], size[1]);
     let output = swiftshader(folder)
         .args(["view", scene, "--time", "0", "--size", &size, "--picture"])
@@ -369,6 +376,7 @@ fn the_picture_of_the_page_is_the_native_one_at_a_pixel_ratio_of_two() {
 #[test]
 fn images_that_the_browser_decodes_are_the_native_ones() {
     is_native("photos", "photos.json", page(), 1.0);
+    is_native("photos of a server", "served/photos.json", page(), 1.0);
 }
 
 #[test]

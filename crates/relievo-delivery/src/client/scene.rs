@@ -56,6 +56,8 @@ pub struct StreamedScene<T> {
     packages: BTreeMap<PathBuf, ModelKey>,
     /// Packages of which something is shown.
     shown: BTreeSet<ModelKey>,
+    /// Packages of which something was taken in, but not shown.
+    fetched: BTreeSet<ModelKey>,
     loaded: Option<LoadedScene>,
     /// Whether packages are fetched whole, whatever the views need.
     fetches_all: bool,
@@ -66,18 +68,19 @@ impl<T: Transport> StreamedScene<T> {
     pub fn open(url: &str, transport: T, options: FetcherOptions) -> Self {
         let mut fetcher = Fetcher::new(transport, options);
         let text = Some(fetcher.add_file(url));
-        let (file, files, packages, shown, loaded) = Default::default();
+        let (file, files, packages, shown, fetched, loaded) = Default::default();
         let url = url.to_owned();
-        Self { fetcher, url, text, file, files, packages, shown, loaded, fetches_all: false }
+        Self { fetcher, url, text, file, files, packages, shown, fetched, loaded, fetches_all: false }
     }
 
     /// A scene file that is there already, whose names are relative to `url`. What the fetcher has of its files is not fetched
     /// again.
     pub fn with_file(file: SceneFile, url: &str, fetcher: Fetcher<T>) -> Self {
-        let (files, packages, shown, loaded) = Default::default();
+        let (files, packages, shown, fetched, loaded) = Default::default();
         let url = url.to_owned();
         let (text, fetches_all) = (None, false);
-        let mut own = Self { fetcher, url, text, file: None, files, packages, shown, loaded, fetches_all };
+        let mut own =
+            Self { fetcher, url, text, file: None, files, packages, shown, fetched, loaded, fetches_all };
         own.set_file(file);
         own
     }
@@ -156,11 +159,25 @@ impl<T: Transport> StreamedScene<T> {
         views: &[&View],
         now: Duration,
     ) -> Result<bool, Error> {
-        let fetched = self.fetcher.update(now);
+        self.receive(now);
+        self.show_async(world, views).await
+    }
+
+    /// Takes in what has arrived, without showing it.
+    pub fn receive(&mut self, now: Duration) {
+        self.fetched.extend(self.fetcher.update(now).into_iter().map(|own| own.model));
+    }
+
+    /// Shows what was taken in, and asks for what views with cameras need next. Whether the scene has changed.
+    ///
+    /// # Errors
+    /// Same as `StreamedScene::update`.
+    pub async fn show_async(&mut self, world: &mut World, views: &[&View]) -> Result<bool, Error> {
+        let fetched = std::mem::take(&mut self.fetched);
         let mut has_changed = false;
         for (path, key) in &self.packages {
             let is_here = self.fetcher.count(*key).is_some_and(|own| own.levels > 0);
-            let is_new = fetched.iter().any(|own| own.model == *key) || !self.shown.contains(key);
+            let is_new = fetched.contains(key) || !self.shown.contains(key);
             let is_new = is_here && is_new;
             let Some(loaded) = self.loaded.as_mut().filter(|_| is_new) else { continue };
             let in_file = |source| Error::InputFile { path: path.clone(), source };
@@ -183,6 +200,11 @@ impl<T: Transport> StreamedScene<T> {
     /// Mutable form of [`StreamedScene::fetcher`].
     pub fn fetcher_mut(&mut self) -> &mut Fetcher<T> {
         &mut self.fetcher
+    }
+
+    /// The contents of the files that the scene needs at once, as far as they are there.
+    pub fn files(&self) -> impl Iterator<Item = &[u8]> {
+        self.files.values().filter_map(|key| self.fetcher.file(*key).ok().flatten())
     }
 
     /// The packages of the scene, by their paths in the scene file.

@@ -26,7 +26,7 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
                 }
             }
         });
-        // Below what can be pressed, since it grows while a scene is opened.
+        // Below what can be pressed, since its length changes with the scene.
         summary(viewer, ui);
     });
     section(ui, "Network", false, |ui| network(viewer, ui));
@@ -68,8 +68,6 @@ fn open(viewer: &mut Viewer, ui: &mut Ui) {
             response.request_focus();
         }
     });
-    #[cfg(target_arch = "wasm32")]
-    let offered = crate::web::offered(ui.ctx());
     egui::ComboBox::from_id_salt("examples")
         .selected_text("Examples and recent files")
         .width(ui.available_width())
@@ -80,7 +78,7 @@ fn open(viewer: &mut Viewer, ui: &mut Ui) {
                 }
             }
             #[cfg(target_arch = "wasm32")]
-            for (name, address) in offered {
+            for (name, address) in crate::web::offered(ui.ctx()) {
                 if ui.selectable_label(false, format!("{name}, from this server")).clicked() {
                     wanted = Some(address);
                 }

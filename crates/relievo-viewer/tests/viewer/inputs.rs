@@ -88,6 +88,8 @@ fn a_scene_with_a_mistake_is_told_with_its_path_and_the_old_one_stays() {
     driver.viewer.open_address("there/is/no.glb");
     driver.settle();
     assert!(driver.viewer.notice().expect("a message").contains("no.glb: "));
+    // What could not be opened is not offered again.
+    assert_eq!(driver.viewer.settings().recent, [folder.path().join("rock.glb").display().to_string()]);
     driver.viewer.open_address("ftp://there.is/a.glb");
     assert!(driver.viewer.notice().expect("a message").contains("must be the path of a file"));
 }

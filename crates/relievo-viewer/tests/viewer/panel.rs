@@ -337,6 +337,19 @@ fn sections_that_open_change_nothing() {
 }
 
 #[test]
+fn full_detail_stays_beside_a_scene_until_another_one_is_there() {
+    let mut driver = rocks([640, 2000]);
+    driver.click("full detail beside it");
+    driver.settle();
+    driver.viewer.open_address("there/is/no.glb");
+    driver.settle();
+    assert!(driver.viewer.notice().is_some() && driver.viewer.compares());
+    driver.viewer.open("creature.rlv", Arc::new(Memory::default().with("creature.rlv", creature())));
+    driver.settle();
+    assert!(driver.viewer.notice().is_none() && !driver.viewer.compares());
+}
+
+#[test]
 fn the_experiment_can_be_cancelled() {
     let mut driver = rocks([640, 2000]);
     for section in ["Scene", "Detail", "Time and camera", "Experiment"] {

@@ -539,7 +539,7 @@ impl Pool {
             windows.each_ref().map(|heights| Fields { heights: heights.clone(), width: wide, count });
         both[1].width -= 2;
         let eroding = Eroding { windows: &both, flows: flows.as_ref() };
-        let (mut steps, Fields { heights, .. }) = erosion.pass.prepare(gpu, recipe, eroding)?;
+        let (mut steps, Fields { heights, .. }) = erosion.pass.prepare(gpu, eroding)?;
         let points = BATCH * (width as usize).pow(2);
         let buffers = LimitBuffers { origins: &self.heights, heights: &heights };
         steps.push(erosion.limiting.prepare(gpu, *limit, points, buffers)?);
