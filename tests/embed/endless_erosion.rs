@@ -33,24 +33,22 @@ fn recipe() -> TerrainRecipe {
 }
 
 fn source(recipe: TerrainRecipe) -> TerrainSource {
-    let limits = EndlessLimits {
-        nodes_per_frame: 64,
-        view_distance: Some(2_500.0),
-        erosion_depth: DEPTH,
-        ..EndlessLimits::default()
-    };
-    TerrainSource::from(recipe).with_limits(limits)
+    seen_up_to(2_500.0, recipe)
 }
 
 /// The same with a short view, which is made quickly.
 fn near(recipe: TerrainRecipe) -> TerrainSource {
+    seen_up_to(800.0, recipe)
+}
+
+fn seen_up_to(distance: f64, recipe: TerrainRecipe) -> TerrainSource {
     let limits = EndlessLimits {
         nodes_per_frame: 64,
-        view_distance: Some(800.0),
+        view_distance: Some(distance),
         erosion_depth: DEPTH,
         ..EndlessLimits::default()
     };
-    source(recipe).with_limits(limits)
+    TerrainSource::from(recipe).with_limits(limits)
 }
 
 /// The finest heights, eroded patch by patch, and the patches that are known.
