@@ -246,7 +246,7 @@ impl Loader<'_> {
         self.teller.step("building the scene on the device").await;
         let mut world = loaded.build_async(&self.gpu).await?;
         self.teller.step("waiting for the coarsest level").await;
-        streaming.appear(&self.gpu, &mut world, |why| _ = self.waits(why)).await?;
+        streaming.appear(&mut world, |why| _ = self.waits(why)).await?;
         for arrival in streaming.arrivals() {
             self.teller.tell(News::Arrived(arrival));
         }

@@ -75,10 +75,9 @@ impl Stage {
     /// # Errors
     /// As for [`Streaming::update`].
     pub(crate) async fn stream(&mut self, streaming: &mut Streaming) -> Result<(), Error> {
-        let gpu = self.world.scene.gpu().clone();
         let views = [&self.view];
         let views = if self.view.camera().is_some() { &views[..] } else { &[] };
-        if streaming.update(&gpu, &mut self.world, views).await? {
+        if streaming.update(&mut self.world, views).await? {
             let Self { world, shadow, shaded, levels, .. } = self;
             shaded.prepare_async(&world.scene).await?;
             levels.prepare_async(&world.scene).await?;

@@ -245,10 +245,11 @@ impl Streaming {
     /// As for [`StreamedScene::begin`].
     pub async fn begin(&mut self, gpu: &Gpu, wait: impl Fn(&str)) -> Result<LoadedScene, Error> {
         loop {
-            // All at once: the scene stops at the first image that it lacks.
-            self.scene.files().for_each(images::note);
-            self.decoded.0.extend(images::decode(gpu).await);
             let loaded = self.scene.begin(self.began.elapsed(), &Samples).map(|loaded| loaded.cloned());
+            if loaded.is_err() {
+                // All at once: the scene stops at the first image that it lacks.
+                self.scene.files().for_each(images::note);
+            }
             let files = images::decode(gpu).await;
             let has_decoded = !files.is_empty();
             self.decoded.0.extend(files);
@@ -270,9 +271,9 @@ impl Streaming {
     ///
     /// # Errors
     /// As for [`StreamedScene::update_async`]; [`Error`] if nothing of the scene can be fetched.
-    pub async fn appear(&mut self, gpu: &Gpu, world: &mut World, wait: impl Fn(&str)) -> Result<(), Error> {
+    pub async fn appear(&mut self, world: &mut World, wait: impl Fn(&str)) -> Result<(), Error> {
         while world.objects.is_empty() {
-            self.update(gpu, world, &[]).await?;
+            self.update(world, &[]).await?;
             if let Some(why) = &self.scene.fetcher().transport().failure {
                 wait(why);
             }
@@ -294,11 +295,11 @@ impl Streaming {
     ///
     /// # Errors
     /// As for [`StreamedScene::update_async`].
-    pub async fn update(&mut self, gpu: &Gpu, world: &mut World, views: &[&View]) -> Result<bool, Error> {
+    pub async fn update(&mut self, world: &mut World, views: &[&View]) -> Result<bool, Error> {
         let now = self.now();
         self.scene.receive(now);
         // The texels of a package's images are read when it is shown.
-        self.decoded.0.extend(images::decode(gpu).await);
+        self.decoded.0.extend(images::decode(world.scene.gpu()).await);
         let shown = self.scene.show_async(world, views).await;
         if self.is_settled() {
             self.decoded = Decoded::default();
