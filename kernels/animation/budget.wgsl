@@ -3,6 +3,7 @@
 // that every device decides identically.
 import package::wgsl::animation::gate_state::{Lod, lod_flags_tier, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock, fraction_of, update_reason_of};
 import package::wgsl::animation::motion::{motion_at, motion_between};
+import package::wgsl::dispatch::nonuniform;
 
 // Stage of the kernel: one of the constants below.
 override STAGE: u32 = 0;
@@ -110,8 +111,8 @@ fn word_of_bones_at(index: u32) -> WordOfBones {
 }
 
 // Whether the budget permits all bones of all instances.
-fn is_unlimited() -> bool {
-    return params.budget >= params.instances * params.bones;
+fn is_unlimited(index: u32) -> bool {
+    return params.budget >= nonuniform(params.instances * params.bones, index);
 }
 
 // Rank, 1 to 768, of the product missed * weight on a logarithmic scale: sixteen ranks per octave.
@@ -154,7 +155,7 @@ fn rank(index: u32) {
     if word_of_bones.forced != 0u {
         atomicAdd(&tally[FORCED], countOneBits(word_of_bones.forced));
     }
-    if is_unlimited() {
+    if is_unlimited(index) {
         return;
     }
     let weight = lods[word_of_bones.instance].weight;
@@ -220,7 +221,7 @@ fn decide(index: u32) {
     let lowest = atomicLoad(&tally[LOWEST]);
     var above = word_of_bones.forced;
     var equal = 0u;
-    if is_unlimited() {
+    if is_unlimited(index) {
         above |= word_of_bones.candidates;
     } else {
         for (var two = 0u; two < 16u; two++) {

@@ -5,6 +5,7 @@ import package::wgsl::animation::clock::inside_clip;
 import package::wgsl::animation::gate_state::{FRACTION_ONE, LOD_FORCED, LOD_HIDDEN, Lod, lod_flags_tier, UPDATE_REASON_BLENDED, UPDATE_REASON_FORCED, UPDATE_REASON_FREE, UPDATE_REASON_HIDDEN, ClipClock, progress_word};
 import package::wgsl::animation::instance::AnimationInstance;
 import package::wgsl::animation::timeline::keyframe_cursor;
+import package::wgsl::dispatch::nonuniform;
 
 // Parameters of the kernel `animation/clip_clock`.
 struct ClipClockParams {
@@ -44,15 +45,11 @@ const TIER_SHIFT: u32 = 24u;
 // Factor in the hash of the clips above the base layer (`clips_above`).
 const CLIP_HASH_FACTOR: u32 = 31u;
 
-// Clip index that no instance has.
-const NO_CLIP: u32 = 0xffffffffu;
-
-// Hash of the clips that play above the base layer; 0 if there are none. `base` is the clip of the base layer. Driver
-// workaround: where uniforms alone decide loops and branches, lavapipe compiles the kernel again in each submission. The loop
-// therefore also depends on `base`, which is never NO_CLIP.
-fn clips_above(instance: u32, base: u32) -> u32 {
+// Hash of the clips that play above the base layer; 0 if there are none.
+fn clips_above(instance: u32) -> u32 {
     var clips = 0u;
-    for (var layer = 0u; layer < select(params.layers, 0u, base == NO_CLIP); layer++) {
+    let layers = nonuniform(params.layers, instance);
+    for (var layer = 0u; layer < layers; layer++) {
         let is_heard = layer_weights[layer * params.instances + instance] > 0.0;
         let clip = instances[(layer + 1u) * params.instances + instance].clip;
         clips = CLIP_HASH_FACTOR * clips + select(0u, clip + 1u, is_heard);
@@ -76,7 +73,7 @@ fn clip_clock_of(index: u32, flags: u32) -> ClipClock {
     let then = inside_clip(instance.wrap_code, clip.duration, instance.start + instance.rate * seconds);
     let later = select(time, then, params.ahead != 0.0);
     let ahead = keyframe_cursor(timeline, later);
-    let above = clips_above(index, instance.clip);
+    let above = clips_above(index);
     let tier = lod_flags_tier(flags) << TIER_SHIFT;
     let base = (instance.clip + 1u) | tier | select(0u, BLENDED, above != 0u);
     let known = vec4<u32>(base, above, bitcast<u32>(time), bitcast<u32>(later));

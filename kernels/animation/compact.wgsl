@@ -4,7 +4,7 @@
 // one dispatch each.
 import package::wgsl::animation::gate_state::PAIR_AHEAD;
 import package::wgsl::animation::order::Slot;
-import package::wgsl::dispatch::rows_of_workgroups;
+import package::wgsl::dispatch::{nonuniform, rows_of_workgroups};
 
 // Stage of the kernel: one of the constants below.
 override STAGE: u32 = 0;
@@ -64,16 +64,15 @@ fn run(start: u32, end: u32) -> u32 {
     return below & (0xffffffffu << start);
 }
 
-// Stage SPREAD for one instance. Driver workaround: where uniforms alone decide a loop's end, lavapipe compiles the kernel
-// again in each submission. This loop and the loop in `scan` therefore have a second condition, which always holds. In this
-// loop, it holds because no subtree ends beyond the last bone.
+// Stage SPREAD for one instance.
 fn spread(instance: u32) {
     let first_word = instance * params.words;
     let all_words = params.instances * params.words;
     var count = 0u;
     // End of the last updated subtree: the slot after the subtree's last slot.
     var end = 0u;
-    for (var word = 0u; word < params.words && end <= params.bones; word++) {
+    let words = nonuniform(params.words, instance);
+    for (var word = 0u; word < words; word++) {
         let chosen = bits[first_word + word];
         let first = 32u * word;
         var below = 0u;
@@ -128,7 +127,8 @@ fn scan(lane: u32) {
     if lane == WIDTH - 1u {
         pair_dispatch[0] = vec4<u32>(dispatch_of(before.x), before.x);
         instance_dispatches[0] = vec4<u32>(dispatch_of(before.y), before.y);
-        for (var at = 1u; at <= params.served && before.y <= params.instances; at++) {
+        let served = nonuniform(params.served, lane);
+        for (var at = 1u; at <= served; at++) {
             let each = instance_dispatches[at].w;
             instance_dispatches[at] = vec4<u32>(dispatch_of(before.y * each), each);
         }

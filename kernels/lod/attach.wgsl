@@ -4,6 +4,7 @@
 // mesh had in the last frame.
 import package::wgsl::lod::allowed::Allowed;
 import package::wgsl::affine::product_row;
+import package::wgsl::dispatch::nonuniform;
 import package::wgsl::lod::instance::{SceneInstance, instance_axes, instance_position};
 import package::wgsl::lod::view::SelectView;
 
@@ -109,13 +110,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         product_row(model_matrices[bone + 2u], offset[0], offset[1], offset[2]));
     let is_seen = allowed[character].displacement >= 0.0;
     write_placed(instances[character], local, attachment.mesh, is_seen);
-    if params.first_last == 0u {
+    if nonuniform(params.first_last, index) == 0u {
         return;
     }
     // All views of a frame write equal values, and read only entries that no view of the frame writes.
     let last = kept[2u * index + ((params.frame + 1u) & 1u)];
     var last_local = local;
-    if params.last_frame != 0u && last.frame == params.last_frame && last.key == attachment.key {
+    if nonuniform(params.last_frame, index) != 0u && last.frame == params.last_frame && last.key == attachment.key {
         last_local = last.rows;
     }
     write_placed(last_instances[character], last_local, params.first_last + attachment.mesh, is_seen);

@@ -1,5 +1,6 @@
 // Finds the instances of a scene that a view sees, with their metric, placement and allowed displacement. A thread handles one
 // instance. `lod/decide` then chooses their levels of detail.
+import package::wgsl::dispatch::nonuniform;
 import package::wgsl::lod::allowed::{Allowed, MAX_ALLOWED, UNSEEN_ALLOWED, allowed_in_model, camera_allows};
 import package::wgsl::lod::criterion::{MAX_METRIC, Placed, criterion_metric};
 import package::wgsl::lod::instance::{CELL_SIZE, INSTANCE_ALIVE, INSTANCE_CASTS, Axes, SceneInstance, instance_axes, instance_flags_mask, instance_position};
@@ -42,7 +43,7 @@ const MAX_MOTION: f32 = 4.0;
 fn is_shown(index: u32, instance: SceneInstance, object: LodObject) -> bool {
     let is_in_view = ((shown[index / 32u] >> (index % 32u)) & 1u) != 0u;
     let is_alive = object_flags_shown(object.flags) != 0u && (instance.flags & INSTANCE_ALIVE) != 0u;
-    let casts = view.casters == 0u || (instance.flags & INSTANCE_CASTS) != 0u;
+    let casts = (view.casters == 0u) | ((instance.flags & INSTANCE_CASTS) != 0u);
     return is_in_view && is_alive && casts && (instance_flags_mask(instance.flags) & view.mask) != 0u;
 }
 
@@ -73,7 +74,7 @@ fn perceptual_factor(object: LodObject, index: u32, center: vec3<f32>) -> f32 {
     }
     let now = in_picture(view.clip_rows, center);
     var speed = 0.0;
-    if view.is_next != 0u && view.seconds > 0.0 && decision_seen(decisions[index]) != 0u {
+    if (decision_seen(decisions[index]) != 0u) & (view.is_next != 0u) & (view.seconds > 0.0) {
         let sphere = instances[index].bounding_sphere;
         let last = placements[index];
         let point = vec4<f32>(sphere.xyz, 1.0);
@@ -94,13 +95,12 @@ struct Seen {
     metric: f32,
 }
 
-// Allowed displacement, distance and metric of a visible instance, over all cameras of the view. Driver workaround: where uniforms alone
-// decide loops and branches, lavapipe compiles the kernel again in each submission. The loop therefore also depends on `seen`.
-fn seen_by(object: LodObject, placed: Placed, scale: f32) -> Seen {
-    let cameras = min(view.camera_count, VIEW_CAMERAS);
+// Allowed displacement, distance and metric of a visible instance, over all cameras of the view.
+fn seen_by(index: u32, object: LodObject, placed: Placed, scale: f32) -> Seen {
+    let cameras = nonuniform(min(view.camera_count, VIEW_CAMERAS), index);
     var seen = Seen(MAX_ALLOWED, MAX_METRIC, MAX_METRIC);
-    for (var index = 0u; index < select(0u, cameras, seen.allowed >= 0.0); index++) {
-        let camera = view.cameras[index];
+    for (var at = 0u; at < cameras; at++) {
+        let camera = view.cameras[at];
         let allowed = allowed_in_model(camera_allows(camera, placed.center, placed.radius), scale);
         seen.allowed = min(seen.allowed, allowed);
         seen.distance = min(seen.distance, camera.perspective * length(placed.center - camera.eye));
@@ -112,10 +112,9 @@ fn seen_by(object: LodObject, placed: Placed, scale: f32) -> Seen {
 // Metric word of an instance in the view. Also writes the instance's placement and its allowed displacement.
 fn metric_of(index: u32, object: LodObject) -> u32 {
     let instance = instances[index];
-    var before = allowed[index];
-    if view.is_first != 0u {
-        before = Allowed(UNSEEN_ALLOWED, MAX_METRIC);
-    }
+    let is_first = view.is_first != 0u;
+    let before = Allowed(
+        select(allowed[index].displacement, UNSEEN_ALLOWED, is_first), select(allowed[index].distance, MAX_METRIC, is_first));
     if is_shown(index, instance, object) {
         let axes = instance_axes(instance);
         let at = instance_position(instance, view.cell);
@@ -125,7 +124,7 @@ fn metric_of(index: u32, object: LodObject) -> u32 {
         // The radius grows by the rounding error of the center, so that the sphere still contains the instance.
         let radius = sphere.w * scale + POSITION_SLACK * (length(at) + scale * length(sphere.xyz));
         if object_flags_never_culled(object.flags) != 0u || is_inside(center, radius) {
-            let seen = seen_by(object, Placed(axes, at, center, radius), scale);
+            let seen = seen_by(index, object, Placed(axes, at, center, radius), scale);
             let factor = object.metric_scale * perceptual_factor(object, index, center);
             placements[index] = array<vec4<f32>, 3>(
                 vec4<f32>(axes.x.x, axes.y.x, axes.z.x, at.x),

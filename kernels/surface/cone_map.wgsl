@@ -8,6 +8,7 @@
 // of the other cell, because they use the smallest distances and the largest heights. Nodes are searched nearest first and
 // skipped when they cannot narrow the cone. Nodes that look small from the cell are treated as a whole, so that the search
 // takes O(log N) per cell.
+import package::wgsl::dispatch::nonuniform;
 import package::wgsl::surface::ray::SURFACE_WRAP;
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index, surface_levels};
 
@@ -170,7 +171,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let own = highest(id.z, 0u, cell);
     // A larger radius would reach images of the tile that are not searched.
     var radius = f32(min(params.cells.x, params.cells.y));
-    let images = select(1u, 9u, params.address == SURFACE_WRAP);
+    let images = nonuniform(select(1u, 9u, params.address == SURFACE_WRAP), id.x);
     for (var image = 0u; image < images; image++) {
         // The tile itself comes first.
         let number = vec2<i32>(i32((image + 4u) % 9u));

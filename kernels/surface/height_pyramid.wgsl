@@ -1,5 +1,6 @@
 // One level of the max-mip pyramids of a batch of height maps (thesis B section 2.3.4). A leaf has the height of the highest
 // corner of a bilinear cell. Any other node has the largest height of its four children. A thread computes a node.
+import package::wgsl::dispatch::nonuniform;
 import package::wgsl::surface::atlas::{surface_atlas_at, surface_corner_index};
 
 // Parameters of the kernel `surface/height_pyramid`.
@@ -32,7 +33,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let at = vec2<i32>(id.xy);
     var four: vec4<f32>;
-    if params.level == 0u {
+    if nonuniform(params.level, id.x) == 0u {
         four = vec4<f32>(
             corner(id.z, at), corner(id.z, at + vec2<i32>(1, 0)),
             corner(id.z, at + vec2<i32>(0, 1)), corner(id.z, at + vec2<i32>(1, 1)));

@@ -1,5 +1,6 @@
 // Colour map of patches, seen from above, with one sRGB pixel per sample: the textures of the ground, blended by zones (thesis
 // B equations 3.6 and 3.7), with hill-shading. The kernel reads windows that extend one sample beyond the patch.
+import package::wgsl::dispatch::nonuniform;
 import package::wgsl::terrain::fixed::HEIGHT_ONE;
 import package::wgsl::terrain::light::{Light, lit};
 import package::wgsl::terrain::slope::slope_normal;
@@ -55,14 +56,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let place = places[id.z] + id.xy * params.tiles_per_sample;
     let tiles = vec3<u32>(place.x, tiles_up(fixed_height, params.tiles_per_unit), place.y);
     var weights = vec3<f32>(1.0, 0.0, 0.0);
-    if params.planes == TRIPLANAR_PLANES {
+    let planes = nonuniform(params.planes, id.x);
+    if planes == TRIPLANAR_PLANES {
         weights = triplanar_weights(normal);
     }
     var blend = zone_blend();
-    for (var z = 0u; z < params.zone_count; z++) {
+    let zone_count = nonuniform(params.zone_count, id.x);
+    for (var z = 0u; z < zone_count; z++) {
         let map_zone = zones[z];
         var texel = vec4<f32>(0.0);
-        for (var plane = 0u; plane < params.planes; plane++) {
+        for (var plane = 0u; plane < planes; plane++) {
             texel += triplanar_weight(weights, plane) * texel_at(texel_index(map_zone, plane_tiles(plane, tiles)));
         }
         blend = zone_blended(blend, map_zone.zone, height, steep, texel);

@@ -1,4 +1,5 @@
 // Heights of a batch of regions of the plane from octaves of noise. A thread computes one sample; a batch is one dispatch.
+import package::wgsl::dispatch::nonuniform;
 import package::wgsl::terrain::noise::{
     GENERATOR, NOISE_ONE, NOISE_RIDGED, NOISE_SIMPLEX, noise_times, octave_key, square_noise, triangle_noise,
 };
@@ -35,7 +36,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var height = 0;
     // Weight of ridges: 1, and from octave 1 on what octave 0 gives.
     var weight = NOISE_ONE;
-    for (var octave = 0u; octave < params.octaves; octave++) {
+    let octaves = nonuniform(params.octaves, id.x);
+    for (var octave = 0u; octave < octaves; octave++) {
         let log2 = params.base_log2 - octave;
         let key = octave_key(params.key, octave);
         var noise = 0;

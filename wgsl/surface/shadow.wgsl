@@ -41,7 +41,7 @@ fn surface_soft_shadow(
     let rise = 1.0 - start.height;
     let count = clamp(steps, 1u, SURFACE_MAX_STEPS);
     var shade = 0.0;
-    for (var step = 1u; step <= count; step++) {
+    for (var step = 1u; (step <= count) & (shade < 1.0); step++) {
         // Samples are denser close to the point, where an occluder casts the sharpest shadow.
         let fraction = f32(step) / f32(count + 1u);
         let travelled = fraction * fraction;

@@ -1,0 +1,73 @@
+//! Frames compile nothing on lavapipe, which inserts the values of uniforms into a shader and compiles it again in each submission
+//! where they alone decide a branch that removes most of it (`docs/drivers.md`).
+
+use relievo_testing as harness;
+
+use std::path::Path;
+
+use harness::gpu;
+use relievo_lab::measure::{Player, Rendering};
+use relievo_scene_file::SceneFile;
+use serde_json::{Value, json};
+
+/// Frames after which every shader of a scene is compiled, and frames that compile none.
+const WARM: usize = 4;
+const FRAMES: usize = 6;
+
+/// Bytes of compiled shaders in this process: memory that holds programs and is of no file.
+fn compiled() -> usize {
+    let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux");
+    let size = |line: &str| -> Option<usize> {
+        let fields: Vec<&str> = line.split_whitespace().collect();
+        let (from, to) = fields[0].split_once('-')?;
+        let bytes = usize::from_str_radix(to, 16).ok()? - usize::from_str_radix(from, 16).ok()?;
+        (fields[1] == "r-xp" && fields.len() == 5).then_some(bytes)
+    };
+    maps.lines().filter_map(size).sum()
+}
+
+/// What a scene compiles in frames that follow each other, after the first ones, while its camera moves.
+fn compiled_later(name: &str, change: &dyn Fn(&mut Value)) -> usize {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes");
+    let mut scene: Value =
+        serde_json::from_slice(&std::fs::read(folder.join(name)).expect("there")).expect("JSON");
+    change(&mut scene);
+    let file = SceneFile::from_json(&scene.to_string()).expect("valid");
+    let loaded =
+        file.load(&|name| std::fs::read(folder.join(name)), &relievo_samples::Samples).expect("valid");
+    let rendering = Rendering { size: [160, 90], quality: loaded.file().quality(), ..Rendering::default() };
+    let mut player = Player::new(loaded.build(&gpu()).expect("built"), rendering).expect("prepared");
+    let mut frames = |count: usize| {
+        for _ in 0..count {
+            player.frame(0.05).expect("drawn");
+        }
+        compiled()
+    };
+    let before = frames(WARM);
+    let after = frames(FRAMES);
+    println!("{name}: {} kB, {} more in {FRAMES} frames", before / 1024, (after - before) / 1024);
+    after - before
+}
+
+/// Meshes, characters, patches, endless terrain of noise and its relief, with a shadow and a budget.
+#[test]
+fn frames_of_scenes_compile_nothing() {
+    if !gpu().adapter().name.contains("llvmpipe") {
+        println!("other drivers do not insert uniforms");
+        return;
+    }
+    let as_it_is = |_: &mut Value| ();
+    let noise = |scene: &mut Value| {
+        let config = &mut scene["terrain"]["config"];
+        config["generator"] = json!("fbm");
+        config["interpolation"] = json!("linear");
+    };
+    let scenes: [(&str, &dyn Fn(&mut Value)); 4] = [
+        ("ruins.json", &as_it_is),
+        ("priorities.json", &as_it_is),
+        ("horizon.json", &noise),
+        ("scree.json", &as_it_is),
+    ];
+    let found = scenes.map(|(name, change)| (name, compiled_later(name, change)));
+    assert!(found.iter().all(|(_, bytes)| *bytes == 0), "{found:?}");
+}
