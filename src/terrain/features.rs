@@ -197,16 +197,24 @@ impl Features {
     ) -> Vec<(u32, u32, i32)> {
         let Some(points) = self.worlds.get(&world) else { return Vec::new() };
         let Lattice { origin, width, spacing } = lattice;
-        let end = |start: i64| start + i64::from(width.max(1) - 1) * spacing;
+        let [last_x, last_y] = origin.map(|start| start + i64::from(width.max(1) - 1) * spacing);
+        let is_on = |value: i64, step: i64| value.rem_euclid(step) == 0;
         let mut found = Vec::new();
-        for (&(y, x), &height) in points.range((origin[1], i64::MIN)..=(end(origin[1]), i64::MAX)) {
-            let on = |value: i64, step: i64| value.rem_euclid(step) == 0;
-            let inside = (origin[0]..=end(origin[0])).contains(&x) && on(x, spacing) && on(y, spacing);
-            let old = on(x, 2 * spacing) && on(y, 2 * spacing);
-            if inside && !(new_only && old) {
-                let index = |value: i64, start: i64| ((value - start) / spacing) as u32;
-                found.push((index(x, origin[0]), index(y, origin[1]), height));
-            }
+        // The next row of the lattice that may have points, at any column.
+        let next_row = |from: i64| {
+            let (&(y, _), _) = points.range((from.min(last_y), i64::MIN)..=(last_y, i64::MAX)).next()?;
+            let row = y + (-y).rem_euclid(spacing);
+            (from <= row && row <= last_y).then_some(row)
+        };
+        let rows = std::iter::successors(next_row(origin[1]), |row| next_row(row + spacing));
+        for row in rows {
+            let points = points.range((row, origin[0])..=(row, last_x)).filter(|((_, x), _)| {
+                is_on(*x, spacing) && !(new_only && is_on(*x, 2 * spacing) && is_on(row, 2 * spacing))
+            });
+            let index = |value: i64, start: i64| ((value - start) / spacing) as u32;
+            found.extend(
+                points.map(|((_, x), height)| (index(*x, origin[0]), index(row, origin[1]), *height)),
+            );
         }
         found
     }
@@ -253,5 +261,43 @@ impl Features {
     /// World that contains a patch: (0, 0) for `seamless` terrain, otherwise the patch's own coordinates.
     pub(crate) fn world_of(config: &TerrainConfig, patch: [i32; 2]) -> [i32; 2] {
         if config.border == Border::Seamless { [0, 0] } else { patch }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The points of a lattice are those that a look at each point finds.
+    #[test]
+    fn lattices_have_all_of_their_points() {
+        let mut word = 1_u64;
+        let mut draw = |count: i64| {
+            word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (word >> 33) as i64 % count
+        };
+        let points: BTreeMap<(i64, i64), i32> =
+            (0..400).map(|at| ((draw(80) - 40, draw(80) - 40), at)).collect();
+        let features =
+            Features { mode: FeatureMode::Keep, worlds: BTreeMap::from([([0, 0], points.clone())]) };
+        let mut found = 0;
+        for _ in 0..2000 {
+            let spacing = 1 << draw(5);
+            let origin = [0; 2].map(|_| (draw(120) - 60).div_euclid(spacing) * spacing);
+            let lattice = Lattice { origin, width: draw(9) as u32, spacing };
+            let new_only = draw(2) == 1;
+            let width = i64::from(lattice.width.max(1));
+            let mut all = Vec::new();
+            for (row, column) in (0..width).flat_map(|row| (0..width).map(move |column| (row, column))) {
+                let [x, y] = [origin[0] + column * spacing, origin[1] + row * spacing];
+                let is_old = x % (2 * spacing) == 0 && y % (2 * spacing) == 0;
+                if let Some(height) = points.get(&(y, x)).filter(|_| !(new_only && is_old)) {
+                    all.push((column as u32, row as u32, *height));
+                }
+            }
+            found += all.len();
+            assert_eq!(features.on_lattice([0, 0], lattice, new_only), all, "{spacing} {origin:?}");
+        }
+        assert!(found > 500, "{found}");
     }
 }

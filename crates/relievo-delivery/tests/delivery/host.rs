@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use relievo::asset::ModelFile;
+use relievo::asset::package::PackageHeader;
+use relievo::asset::{Model, ModelFile};
 use relievo_delivery::catalog::Catalog;
 use relievo_delivery::server::{ServeOptions, Server, Site};
 use tempfile::TempDir;
@@ -42,13 +43,27 @@ pub fn rock() -> &'static [u8] {
     PACKAGE.get_or_init(|| package("rock"))
 }
 
+/// A package of a few thousand bytes: the rock's five coarsest levels.
+pub fn pebble() -> &'static [u8] {
+    static PACKAGE: OnceLock<Vec<u8>> = OnceLock::new();
+    PACKAGE.get_or_init(|| {
+        let (header, _) = PackageHeader::read(rock()).expect("a header");
+        let coarse = Model::from_rlv(&rock()[..header.levels[4].chunk.end]).expect("ends with a level");
+        cooked(&coarse.into())
+    })
+}
+
 /// The package of a built-in model, made from its .glb file.
 fn package(name: &str) -> Vec<u8> {
     let glb = relievo_samples::model(name).expect("built in").to_glb().expect("a file");
     let file =
         ModelFile::from_bytes_beside("model.glb".as_ref(), &glb, &|_| unreachable!()).expect("a model");
+    cooked(&file)
+}
+
+fn cooked(file: &ModelFile) -> Vec<u8> {
     let go_on = &mut |_| std::ops::ControlFlow::Continue(());
-    relievo::ops::skinning::cook(&file, go_on).expect("cooked").expect("not broken off")
+    relievo::ops::skinning::cook(file, go_on).expect("cooked").expect("not broken off")
 }
 
 pub fn built_ins() -> Box<dyn relievo_scene_file::BuiltIns + Send + Sync> {
