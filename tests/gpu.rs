@@ -5,7 +5,7 @@ use relievo_testing as harness;
 use std::pin::pin;
 use std::task::{Context, Poll, Wake};
 
-use harness::{foreign_adapter, gpu};
+use harness::{foreign_adapter, new_gpu};
 use relievo::asset::keyframe::RotationPath;
 use relievo::gpu::{Buffer, Gpu, GpuError, Options, adapters};
 use relievo::ops::animation::ClipSet;
@@ -69,7 +69,7 @@ fn relievo_embeds_in_a_program_with_its_own_device() {
 #[test]
 fn a_validation_error_is_returned_and_the_device_goes_on() {
     let (device, queue) = foreign();
-    for gpu in [gpu(), Gpu::from_wgpu(device, queue)] {
+    for gpu in [new_gpu(), Gpu::from_wgpu(device, queue)] {
         let buffer = Buffer::<u32>::new(&gpu, "small", 4).expect("allocated");
         let error = buffer.write(&gpu, &[0; 5]).expect_err("too long");
         assert!(matches!(error, GpuError::Validation { .. }), "{error}");
@@ -89,7 +89,7 @@ impl Wake for Alarm {
 
 #[test]
 fn reading_waits_without_blocking_and_is_woken_by_the_device() {
-    let gpu = gpu();
+    let gpu = new_gpu();
     let buffer = Buffer::from_slice(&gpu, "data", &[1_u32, 2, 3, 4]).expect("uploaded");
     let alarm = std::sync::Arc::new(Alarm::default());
     let waker = alarm.clone().into();
@@ -109,7 +109,7 @@ fn reading_waits_without_blocking_and_is_woken_by_the_device() {
 
 #[test]
 fn a_lost_device_is_an_error() {
-    let gpu = gpu();
+    let gpu = new_gpu();
     let buffer = Buffer::from_slice(&gpu, "data", &[1_u32, 2, 3, 4]).expect("uploaded");
     gpu.device().destroy();
     let error = buffer.read_blocking(&gpu).expect_err("the device is gone").to_string();
@@ -119,7 +119,7 @@ fn a_lost_device_is_an_error() {
 
 #[test]
 fn a_buffer_beyond_the_limit_names_it() {
-    let gpu = gpu();
+    let gpu = new_gpu();
     let words = gpu.max_binding() as usize / 4;
     let error = Buffer::<u32>::new(&gpu, "huge", words + 1).expect_err("too large").to_string();
     assert!(error.contains("maxStorageBufferBindingSize") && error.ends_with("; split the batch"), "{error}");
@@ -136,7 +136,7 @@ fn a_buffer_beyond_the_limit_names_it() {
 #[test]
 fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_elsewhere() {
     let (device, queue) = foreign();
-    for gpu in [gpu(), Gpu::from_wgpu(device, queue)] {
+    for gpu in [new_gpu(), Gpu::from_wgpu(device, queue)] {
         let config = TerrainConfig::new(4097, 20.0, "large").expect("valid");
         let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
         let apron = 850;
@@ -165,7 +165,7 @@ fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_els
 
 #[test]
 fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
-    let gpu = gpu();
+    let gpu = new_gpu();
     let config = TerrainConfig::new(1025, 20.0, "split").expect("valid");
     let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
     let count = 33_u32;

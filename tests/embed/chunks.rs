@@ -7,7 +7,7 @@ use relievo::gpu::Gpu;
 use relievo::render::{Layer, TargetFormat};
 use relievo::scene::{Camera, InstanceId, ObjectId, Placement, Play, Quality, Scene, View};
 
-use crate::frame::{Frame, device};
+use crate::frame::{Frame, new_device};
 use crate::harness::{Difference, gpu_of_bindings};
 use crate::raw::Raw;
 use crate::world::{SIZE, model};
@@ -72,7 +72,7 @@ fn placement(at: usize) -> Placement {
 /// those of a device that holds all of it at once, while the camera moves and instances move, come and go.
 #[test]
 fn what_exceeds_a_binding_is_divided() {
-    let (small, large) = (gpu_of_bindings(3 << 20), device());
+    let (small, large) = (gpu_of_bindings(3 << 20), new_device());
     let frames = [&small, &large].map(|gpu| Frame::plain(gpu, SIZE));
     let mut crowds = [&small, &large].map(|gpu| Crowd::new(gpu, 0.0));
     for (step, distance) in [60.0, 9.0, 5.0, 12.0, 200.0].into_iter().enumerate() {
@@ -107,7 +107,7 @@ fn what_exceeds_a_binding_is_divided() {
 /// Objects that are divided grow like others.
 #[test]
 fn divided_objects_grow() {
-    let (small, large) = (gpu_of_bindings(3 << 20), device());
+    let (small, large) = (gpu_of_bindings(3 << 20), new_device());
     let frames = [&small, &large].map(|gpu| Frame::plain(gpu, SIZE));
     let mut crowds = [&small, &large].map(|gpu| Crowd::new(gpu, 0.0));
     for crowd in &mut crowds {
@@ -132,7 +132,7 @@ fn divided_objects_grow() {
 /// Where memory itself ends, levels of detail are coarser and the scene says so; with memory again, they are not.
 #[test]
 fn where_memory_ends_levels_are_coarser() {
-    let gpu = device();
+    let gpu = new_device();
     let frame = Frame::plain(&gpu, SIZE);
     let mut crowd = Crowd::new(&gpu, 0.01);
     crowd.look(200.0);
@@ -178,7 +178,7 @@ fn swollen(by_target: bool) -> Model {
 /// Morphed vertices are where they would be in a mesh of that shape, also where chunks of instances have pages of their own.
 #[test]
 fn morphed_vertices_are_where_they_belong() {
-    let gpu = device();
+    let gpu = new_device();
     let frame = Frame::plain(&gpu, SIZE);
     let [expected, morphed] = [false, true].map(|by_target| {
         let mut crowd = Crowd::of(&gpu, &swollen(by_target), 0.0);
@@ -203,7 +203,7 @@ fn morphed_vertices_are_where_they_belong() {
 /// Memory for morphed vertices follows what is seen, as that for skinned ones does.
 #[test]
 fn morphed_vertices_take_memory_where_they_are_seen() {
-    let gpu = device();
+    let gpu = new_device();
     let model = swollen(true);
     let vertices: usize = model.meshes.iter().map(Mesh::vertices).sum();
     let mut scene = Scene::new(&gpu).expect("compiled");
@@ -244,7 +244,7 @@ fn instances_in_chunks_keep_their_numbers() {
         raw.frame(&mut crowd.scene, &mut crowd.view, &renderer, &[Layer::Measure]);
         raw.words(gpu, 1)
     };
-    let (divided, whole) = (numbers(&gpu_of_bindings(3 << 20)), numbers(&device()));
+    let (divided, whole) = (numbers(&gpu_of_bindings(3 << 20)), numbers(&new_device()));
     let wrong = divided.iter().zip(&whole).filter(|(a, b)| a != b).count();
     assert!(1000 * wrong < whole.len(), "{wrong} other numbers");
     assert!(divided.iter().any(|[_, instance]| *instance >= 32), "instances of the last chunk are seen");

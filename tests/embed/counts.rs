@@ -5,7 +5,7 @@ use relievo::gpu::Gpu;
 use relievo::scene::{Camera, InstanceBone, Placement, Quality, Scene, View};
 use relievo::wgpu;
 
-use crate::frame::device;
+use crate::frame::new_device;
 use crate::host;
 use crate::world::{SIZE, World, model};
 
@@ -24,7 +24,7 @@ fn submit(scene: &mut Scene, views: &mut [&mut View]) {
 /// Counts are those of the frame that they name, by level and object.
 #[test]
 fn frames_are_counted() {
-    let gpu = device();
+    let gpu = new_device();
     let mut world = World::new(&gpu, 10);
     let statue = world.scene.add_mesh(&model(), 4).expect("added");
     for at in 0..3 {
@@ -88,7 +88,7 @@ fn frames_are_counted() {
 /// exceeds what the view allows.
 #[test]
 fn the_error_of_full_detail_counts() {
-    let gpu = device();
+    let gpu = new_device();
     let pixels_at = |error: f32, distance: f32, pixels: f32| {
         let mut scene = Scene::new(&gpu).expect("a scene");
         let mut quantized = relievo_samples::rock().expect("valid");
@@ -132,7 +132,7 @@ fn the_error_of_full_detail_counts() {
 /// coarse, take what the fine one takes alone, frame by frame.
 #[test]
 fn two_views_take_what_the_finer_takes() {
-    let gpu = device();
+    let gpu = new_device();
     let of = |qualities: &[f32]| {
         let mut world = World::new(&gpu, 10);
         world.scene.set_statistics(true).expect("room");
@@ -166,7 +166,7 @@ fn two_views_take_what_the_finer_takes() {
 /// do no harm.
 #[test]
 fn counts_arrive_late() {
-    let gpu = device();
+    let gpu = new_device();
     let mut world = World::new(&gpu, 3);
     world.scene.set_statistics(true).expect("room");
     let watched = [InstanceBone { instance: world.crowd[0], bone: "0" }];
@@ -231,7 +231,7 @@ fn stages_take_their_time() {
 /// Watched bones are where the host poses them, with the placement and at the time of their frame.
 #[test]
 fn bones_arrive_where_they_are() {
-    let gpu = device();
+    let gpu = new_device();
     let mut world = World::new(&gpu, 4);
     let model = model();
     let name = &model.skeleton.bones()[40].name;

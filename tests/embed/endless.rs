@@ -41,7 +41,10 @@ impl World {
     }
 
     pub fn of(source: &TerrainSource, size: [u32; 2]) -> Self {
-        let gpu = gpu();
+        Self::on(gpu(), source, size)
+    }
+
+    fn on(gpu: Gpu, source: &TerrainSource, size: [u32; 2]) -> Self {
         let mut scene = Scene::new(&gpu).expect("made");
         let land = scene.add_terrain(source).expect("added");
         let view = scene.view(Quality::pixels(1.0)).expect("made");
@@ -355,7 +358,7 @@ fn nodes_are_made_again_after_a_loss() {
 
 /// A lost device and a dropped encoder leave no trace: the picture is the same as before.
 pub fn a_loss_leaves_no_trace(source: &TerrainSource) {
-    let mut world = World::of(source, [160, 90]);
+    let mut world = World::on(crate::harness::new_gpu(), source, [160, 90]);
     let camera = world.above([40.0, -700.0], 12.0);
     world.view.set(camera).expect("valid");
     world.scene.set_statistics(true).expect("counted");

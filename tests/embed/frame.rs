@@ -1,5 +1,7 @@
 //! A program's own device, targets and frames.
 
+use std::sync::OnceLock;
+
 use image::RgbaImage;
 use relievo::gpu::Gpu;
 use relievo::render::{DepthFormat, Layer, Renderer, TargetFormat};
@@ -9,8 +11,14 @@ use relievo::wgpu;
 /// The colour format of the program's targets.
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// A device as a program opens it: WebGPU's default limits, no features.
+/// A device as a program opens it: WebGPU's default limits, no features. All tests share it, so that its kernels are compiled once.
 pub fn device() -> Gpu {
+    static SHARED: OnceLock<Gpu> = OnceLock::new();
+    SHARED.get_or_init(new_device).clone()
+}
+
+/// Such a device for one test: if it loses the device, or counts its memory.
+pub fn new_device() -> Gpu {
     let [device] = devices();
     device
 }

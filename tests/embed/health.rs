@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use relievo::gpu::{Gpu, GpuError};
 use relievo::wgpu;
 
-use crate::frame::{Frame, device};
+use crate::frame::{Frame, new_device};
 use crate::world::{SIZE, World};
 
 /// A buffer of the program of 16 bytes.
@@ -36,7 +36,7 @@ fn copies_the_destroyed(gpu: &Gpu) {
 /// that follow.
 #[test]
 fn a_mistake_is_told_once_and_the_next_frame_works() {
-    let gpu = crate::harness::gpu();
+    let gpu = crate::harness::new_gpu();
     let mut world = World::new(&gpu, 5);
     let mut view = world.view(1.0);
     let frame = Frame::plain(&gpu, SIZE);
@@ -64,7 +64,7 @@ fn a_mistake_is_told_once_and_the_next_frame_works() {
 /// On a program's own device its mistakes are told to its own handler, and the scene is well.
 #[test]
 fn a_program_hears_its_own_mistakes() {
-    let gpu = device();
+    let gpu = new_device();
     let heard = Arc::new(Mutex::new(Vec::new()));
     let to = heard.clone();
     gpu.device().on_uncaptured_error(Arc::new(move |error: wgpu::Error| {

@@ -3,7 +3,7 @@
 use relievo::render::Layer;
 use relievo::scene::{Camera, InstanceId, Placement, Play, Quality, View};
 
-use crate::frame::{Frame, device};
+use crate::frame::{Frame, new_device};
 use crate::harness::Difference;
 use crate::host::Draw;
 use crate::world::{SIZE, World, camera, model};
@@ -16,7 +16,7 @@ fn frames() -> u32 {
 /// A handle names its instance alone: when that is gone, it names nothing, although its place is used again.
 #[test]
 fn stale_handles_are_errors() {
-    let gpu = device();
+    let gpu = new_device();
     let mut world = World::new(&gpu, 3);
     let old = world.crowd[1];
     world.scene.despawn(old).expect("there");
@@ -43,7 +43,7 @@ fn stale_handles_are_errors() {
 /// Scenes, views and renderers may move to other threads and back, and draw the same there.
 #[test]
 fn scenes_move_between_threads() {
-    let gpu = device();
+    let gpu = new_device();
     let (mut here, mut other) = (World::new(&gpu, 3), World::new(&gpu, 3));
     let (frame, views) = (Frame::plain(&gpu, SIZE), [here.view(1.0), other.view(1.0)]);
     let renderers = [&here, &other].map(|world| frame.renderer(&gpu, &world.scene));
@@ -74,7 +74,7 @@ fn scenes_move_between_threads() {
 /// recorded, and equals that of a scene with enough room, whose frames are submitted one by one.
 #[test]
 fn objects_grow_in_flight() {
-    let gpu = device();
+    let gpu = new_device();
     let (mut small, mut large) = (World::empty(&gpu, 1), World::empty(&gpu, 200));
     let frames = [Frame::plain(&gpu, SIZE), Frame::plain(&gpu, SIZE), Frame::plain(&gpu, SIZE)];
     let renderers = [&small, &large].map(|world| frames[0].renderer(&gpu, &world.scene));
@@ -133,7 +133,7 @@ fn next_row(world: &mut World, count: usize) {
 /// `refresh` is that of a fresh scene.
 #[test]
 fn a_long_life_leaves_no_trace() {
-    let gpu = device();
+    let gpu = new_device();
     let mut world = World::new(&gpu, 24);
     let frame = Frame::plain(&gpu, SIZE);
     let mut views = [world.view(1.0), world.view(4.0)];
@@ -219,7 +219,7 @@ fn put(world: &mut World, instance: InstanceId, at: usize) {
 /// pages grow as the camera comes near, shows what a fresh scene shows, whose pages are all dealt out in its first frame.
 #[test]
 fn pages_follow_what_is_seen() {
-    let gpu = device();
+    let gpu = new_device();
     let crowd = || {
         let mut world = World::empty(&gpu, 320);
         (0..60).for_each(|at| {
@@ -258,7 +258,7 @@ fn pages_follow_what_is_seen() {
 /// The host writes what has changed and not what there is.
 #[test]
 fn frames_upload_changes_alone() {
-    let gpu = device();
+    let gpu = new_device();
     let mut world = World::empty(&gpu, 1000);
     world.crowd = (0..1000).map(|at| world.spawn(at % 15)).collect();
     let mut view = world.view(1.0);

@@ -10,7 +10,7 @@ use relievo::scene::{InstanceId, ObjectId, Placement, Quality, Relief, Scene, Vi
 use relievo::wgpu;
 use relievo_samples::maps::BuiltInMap;
 
-use crate::frame::{Frame, device, devices};
+use crate::frame::{Frame, devices, new_device};
 use crate::world::{SIZE, World, model};
 
 /// A world with every kind of object, in its twentieth frame or any other.
@@ -67,7 +67,7 @@ impl Whole {
 /// another device, its pictures are those of a run that was refreshed there, to the bit.
 #[test]
 fn a_lost_device_leaves_no_trace() {
-    let first = device();
+    let first = new_device();
     // The suite's handler panics; a lost device reports errors, as it should.
     let [lost, second] = devices();
     lost.device().on_uncaptured_error(std::sync::Arc::new(|_| ()));
@@ -120,7 +120,7 @@ fn a_lost_device_leaves_no_trace() {
 /// on a device of another instance, and what it was not given is refused there.
 #[test]
 fn one_call_brings_all_back() {
-    let [lost, second] = [device(), device()];
+    let [lost, second] = [new_device(), new_device()];
     let is_heard = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
     let to = is_heard.clone();
     lost.device().set_device_lost_callback(move |_, _| to.store(true, std::sync::atomic::Ordering::Relaxed));
@@ -206,7 +206,7 @@ fn lost_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 /// happened.
 #[test]
 fn a_scene_survives_the_end_of_memory() {
-    let gpu = device();
+    let gpu = new_device();
     let mut world = World::empty(&gpu, 64);
     let mut view = world.view(0.5);
     let frame = Frame::plain(&gpu, SIZE);
@@ -270,7 +270,7 @@ fn a_scene_survives_the_end_of_memory() {
 #[test]
 fn a_rebuild_may_move_to_another_thread() {
     fn moves<T: Send>(_: T) {}
-    let gpu = device();
+    let gpu = new_device();
     let mut scene = Scene::new(&gpu).expect("compiled");
     moves(scene.rebuild_async(&gpu));
 }

@@ -5,6 +5,7 @@ pub mod shader;
 pub mod wasm;
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use image::RgbaImage;
@@ -15,8 +16,15 @@ pub fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
-/// The adapter of the suite. A missing adapter is a failure, and so is one other than `RELIEVO_ADAPTER` names.
+/// A device that the tests of a program share, so that its kernels are compiled once.
 pub fn gpu() -> Gpu {
+    static SHARED: OnceLock<Gpu> = OnceLock::new();
+    SHARED.get_or_init(new_gpu).clone()
+}
+
+/// A device of the suite's adapter: for tests that lose it, or count its memory. A missing adapter is a failure, and so is one other
+/// than `RELIEVO_ADAPTER` names.
+pub fn new_gpu() -> Gpu {
     let gpu = Gpu::headless(&Options::default())
         .expect("the suite needs a Vulkan adapter: `make test` installs one");
     assert_adapter(gpu.adapter());

@@ -13,11 +13,7 @@ use relievo::render::{Offscreen, TargetFormat};
 use relievo::wgpu;
 use relievo_viewer::{Request, Settings, Viewer};
 
-/// The adapter of the suite, with a device that all tests share.
-pub fn gpu() -> Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(relievo_testing::gpu).clone()
-}
+pub use relievo_testing::gpu;
 
 /// The built-in creature as a package, which needs no simplification when it is opened.
 pub fn creature() -> Arc<[u8]> {
