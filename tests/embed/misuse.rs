@@ -9,7 +9,7 @@ use relievo::scene::{Camera, Placement, Quality, Relief, Scene, TerrainSource};
 use relievo::wgpu::{self, TextureFormat as Format};
 use relievo_samples::maps::BuiltInMap;
 
-use crate::frame::{COLOR, Frame, device, devices, new_device};
+use crate::frame::{COLOR, Frame, device, new_device};
 use crate::world::{SIZE, World, camera};
 
 /// Path and value of what is wrong.
