@@ -26,7 +26,7 @@ fn compiled() -> usize {
     maps.lines().filter_map(size).sum()
 }
 
-/// What a scene compiles in frames that follow each other, after the first ones, while its camera moves.
+/// Bytes of shaders that a scene compiles in [`FRAMES`] frames after the first [`WARM`] ones, while its time goes on.
 fn compiled_later(name: &str, change: &dyn Fn(&mut Value)) -> usize {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes");
     let mut scene: Value =

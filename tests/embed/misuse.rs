@@ -9,7 +9,7 @@ use relievo::scene::{Camera, Placement, Quality, Relief, Scene, TerrainSource};
 use relievo::wgpu::{self, TextureFormat as Format};
 use relievo_samples::maps::BuiltInMap;
 
-use crate::frame::{COLOR, Frame, device, new_device};
+use crate::frame::{COLOR, Frame, device, devices, new_device};
 use crate::world::{SIZE, World, camera};
 
 /// Path and value of what is wrong.
@@ -117,7 +117,7 @@ fn a_view_is_out_of_date_once_objects_change() {
 /// A renderer draws scenes of its own device; wgpu would panic.
 #[test]
 fn a_scene_of_another_device_is_refused() {
-    let [own, other] = [new_device(), new_device()];
+    let [own, other] = devices();
     let mut world = World::new(&own, 1);
     let mut view = world.view(1.0);
     let frame = Frame::plain(&own, SIZE);
