@@ -1,10 +1,21 @@
 // Makes nodes of an endless terrain from regions of finer heights: copies every 2^`finer`-th sample into the node's tile, and finds
-// the node's extremes and how far its triangles lie from the finer heights. One thread handles one finer sample.
+// the node's extremes and how far its triangles lie from the finer heights. A thread of the first stage handles `ROWS` finer samples of
+// a column; one of the second stage handles one finer sample beside a border.
 //
 // Beside a coarser neighbour, a node is drawn stitched: each odd vertex on the border lies in an even one beside it. Of two cells of
 // the border then remain the triangles between the even vertices A and B of the border and the vertices I, J, K of the next row:
 // (A, I, J), (A, J, B) and (B, J, K).
 
+// Stage of the kernel: one of the constants below.
+override STAGE: u32 = 0u;
+
+// Stage: tiles, and all facts but that of stitched borders.
+const INSIDE: u32 = 0u;
+// Stage: the deviation beside stitched borders.
+const BORDERS: u32 = 1u;
+
+// Number of finer samples for each thread of the first stage.
+const ROWS: u32 = 8u;
 // Width in samples of the margin around a node in its tile.
 const NODE_MARGIN: u32 = 2u;
 // Number of words that a node's facts take.
@@ -92,7 +103,7 @@ fn strip_height(region: u32, side: u32, along: u32, depth: u32) -> i32 {
 // middle's height is rounded down, hence + 1.
 fn across_deviation(region: u32, side: u32, along: u32, depth: u32) -> u32 {
     let step = 1u << params.finer;
-    let first = min(along / (2u * step), (params.size - 3u) / 2u) * 2u * step;
+    let first = min(along >> (params.finer + 1u), (params.size - 3u) / 2u) * 2u * step;
     let is_back = (side & 1u) != 0u;
     if select(along - first, first + 2u * step - along, is_back) != depth {
         return 0u;
@@ -109,7 +120,7 @@ fn across_deviation(region: u32, side: u32, along: u32, depth: u32) -> u32 {
 // Deviation of a finer sample beside a side of the node from the triangles of the stitched border.
 fn stitched_deviation(region: u32, side: u32, along: u32, depth: u32) -> u32 {
     let step = 1u << params.finer;
-    let first = min(along / (2u * step), (params.size - 3u) / 2u) * 2u * step;
+    let first = min(along >> (params.finer + 1u), (params.size - 3u) / 2u) * 2u * step;
     let at = along - first;
     let is_far = at > 2u * step - depth;
     // The even vertex of the border, and what lies beyond it.
@@ -125,20 +136,6 @@ fn stitched_deviation(region: u32, side: u32, along: u32, depth: u32) -> u32 {
     let inner = strip_height(region, side, first + select(0u, 2u * step, is_far), step);
     return apart(own, start + towards(start, inner, depth - near, params.finer)
         + towards(start, middle, near, params.finer));
-}
-
-// Largest deviation of the finer sample (x, y), counted from the node's first sample, from the triangles of stitched borders.
-fn stitched_at(region: u32, x: u32, y: u32) -> u32 {
-    let last = (params.size - 1u) << params.finer;
-    var largest = 0u;
-    for (var side = 0u; side < 4u; side++) {
-        let across = select(y, x, side < 2u);
-        let depth = select(across, last - across, (side & 1u) != 0u);
-        if depth < 1u << params.finer {
-            largest = max(largest, stitched_deviation(region, side, select(x, y, side < 2u), depth));
-        }
-    }
-    return largest;
 }
 
 // Half of the sum of two differences, rounded away from 0.
@@ -158,31 +155,54 @@ fn second_difference_at(region: u32, x: u32, y: u32) -> u32 {
     return max(max(along_x, along_y), twist);
 }
 
+// Copies the sample (x, y) into the tile if it is one of the node's, and returns the facts of the sample. That of stitched borders is 0.
+fn inside(region: u32, slot: u32, has_tile: bool, x: u32, y: u32) -> array<u32, 5> {
+    var result: array<u32, 5>;
+    let step = 1u << params.finer;
+    let own = height_at(region, x, y);
+    if ((x | y) & (step - 1u)) == 0u && has_tile {
+        let tile_width = params.size + 2u * NODE_MARGIN;
+        tiles[(slot * tile_width + (y >> params.finer)) * tile_width + (x >> params.finer)] = own;
+    }
+    let first = NODE_MARGIN * step;
+    let last = first + (params.size - 1u) * step;
+    if min(x, y) >= first && max(x, y) <= last {
+        result[0] = u32(own) ^ SIGN;
+        result[1] = ~result[0];
+        result[2] = deviation_at(region, x - first, y - first);
+    }
+    if min(x, y) >= 1u && max(x, y) + 1u < params.width {
+        result[4] = second_difference_at(region, x, y);
+    }
+    return result;
+}
+
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     if lane < NODE_FACTS {
         atomicStore(&most[lane], 0u);
     }
     workgroupBarrier();
-    let slot = slots[min(id.z, params.count - 1u)];
-    let tile_width = params.size + 2u * NODE_MARGIN;
+    // The stage of borders has four layers of threads for each region: one per side.
+    let region = min(select(id.z, id.z / 4u, STAGE == BORDERS), params.count - 1u);
+    let slot = slots[region];
     let is_there = slot < arrayLength(&facts) / NODE_FACTS;
-    if id.x < params.width && id.y < params.width && is_there {
-        let step = 1u << params.finer;
-        let own = height_at(id.z, id.x, id.y);
-        if (id.x | id.y) % step == 0u && slot < arrayLength(&tiles) / (tile_width * tile_width) {
-            tiles[(slot * tile_width + id.y / step) * tile_width + id.x / step] = own;
+    if STAGE == BORDERS {
+        if id.x <= (params.size - 1u) << params.finer && is_there {
+            atomicMax(&most[3], stitched_deviation(region, id.z % 4u, id.x, id.y));
         }
-        let first = NODE_MARGIN * step;
-        let last = first + (params.size - 1u) * step;
-        if min(id.x, id.y) >= first && max(id.x, id.y) <= last {
-            atomicMax(&most[0], u32(own) ^ SIGN);
-            atomicMax(&most[1], ~(u32(own) ^ SIGN));
-            atomicMax(&most[2], deviation_at(id.z, id.x - first, id.y - first));
-            atomicMax(&most[3], stitched_at(id.z, id.x - first, id.y - first));
+    } else if id.x < params.width && is_there {
+        let tile_width = params.size + 2u * NODE_MARGIN;
+        let has_tile = slot < arrayLength(&tiles) / (tile_width * tile_width);
+        var found: array<u32, 5>;
+        for (var y = ROWS * id.y; y < min(ROWS * (id.y + 1u), params.width); y++) {
+            let own = inside(region, slot, has_tile, id.x, y);
+            for (var fact = 0u; fact < NODE_FACTS; fact++) {
+                found[fact] = max(found[fact], own[fact]);
+            }
         }
-        if min(id.x, id.y) >= 1u && max(id.x, id.y) + 1u < params.width {
-            atomicMax(&most[4], second_difference_at(id.z, id.x, id.y));
+        for (var fact = 0u; fact < NODE_FACTS; fact++) {
+            atomicMax(&most[fact], found[fact]);
         }
     }
     workgroupBarrier();

@@ -65,6 +65,9 @@ impl Gpu {
 
     /// Waits until the device has executed everything submitted so far.
     ///
+    /// Callbacks run on the thread that polls. If several threads use one device, callbacks of earlier work, and statistics with
+    /// them, may still arrive after this wait.
+    ///
     /// # Errors
     /// The loss of the device, an error that was reported in the meantime, or [`GpuError::Hung`].
     #[cfg(not(target_arch = "wasm32"))]
@@ -105,7 +108,7 @@ impl Gpu {
             if let std::task::Poll::Ready(done) = work.as_mut().poll(&mut context) {
                 return done;
             }
-            // After this wait, the callbacks of the device have run, so the work can go on.
+            // After this wait, the callbacks have run or are running on another thread, so the work can go on.
             self.wait()?;
         }
     }

@@ -1,23 +1,22 @@
 //! A program's own device, targets and frames.
 
-use std::sync::OnceLock;
-
 use image::RgbaImage;
 use relievo::gpu::Gpu;
 use relievo::render::{DepthFormat, Layer, Renderer, TargetFormat};
 use relievo::scene::{Camera, Depth, Scene, View};
 use relievo::wgpu;
+use relievo_testing::Devices;
 
 /// The colour format of the program's targets.
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// A device as a program opens it: WebGPU's default limits, no features. All tests share it, so that its kernels are compiled once.
+/// A device for a test, as a program opens it: WebGPU's default limits, no features; see [`Devices`].
 pub fn device() -> Gpu {
-    static SHARED: OnceLock<Gpu> = OnceLock::new();
-    SHARED.get_or_init(new_device).clone()
+    static DEVICES: Devices = Devices::new(new_device);
+    DEVICES.of_thread()
 }
 
-/// Such a device for one test: if it loses the device, or counts its memory.
+/// Such a device for one test alone: if it loses the device, or counts its memory.
 pub fn new_device() -> Gpu {
     let [device] = devices();
     device

@@ -1,11 +1,13 @@
 //! What the test programs share: the adapter, goldens with blessing, and reports of failed images.
 
 pub mod browser;
+mod devices;
 pub mod shader;
 pub mod wasm;
 
+pub use devices::Devices;
+
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use image::RgbaImage;
@@ -16,10 +18,10 @@ pub fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
-/// A device that the tests of a program share, so that its kernels are compiled once.
+/// A device for a test, of the suite's adapter: see [`Devices`].
 pub fn gpu() -> Gpu {
-    static SHARED: OnceLock<Gpu> = OnceLock::new();
-    SHARED.get_or_init(new_gpu).clone()
+    static DEVICES: Devices = Devices::new(new_gpu);
+    DEVICES.of_thread()
 }
 
 /// A device of the suite's adapter: for tests that lose it, or count its memory. A missing adapter is a failure, and so is one other

@@ -3,13 +3,14 @@
 use super::NodeShape;
 use crate::gpu::bindings::terrain::node as bindings;
 use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
-use crate::shared::terrain::node::NodeParams;
+use crate::shared::terrain::node::{BORDERS, INSIDE, NodeParams, ROWS};
 use crate::{Error, InputError};
 
 /// Makes nodes from regions of finer heights.
 #[derive(Debug, Clone)]
 pub struct NodePass {
-    kernel: Kernel,
+    inside: Kernel,
+    borders: Kernel,
 }
 
 /// Buffers of a batch of nodes.
@@ -32,7 +33,8 @@ impl NodePass {
     /// # Errors
     /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
+        let kernel = |stage| bindings::kernel(gpu, &bindings::Constants { stage });
+        Ok(Self { inside: kernel(INSIDE)?, borders: kernel(BORDERS)? })
     }
 
     /// Prepares a job that makes `count` nodes of one shape.
@@ -60,8 +62,13 @@ impl NodePass {
             tiles: tiles.slice(),
             facts: facts.slice(),
         };
-        let groups = vec![group.bind(gpu, &self.kernel)?];
-        let step = Step::covering(&self.kernel, groups, [width, width, count]);
-        Ok(Job::new(gpu, "terrain/node", vec![step])?)
+        let step = |kernel, threads| {
+            Ok::<_, GpuError>(Step::covering(kernel, vec![group.bind(gpu, kernel)?], threads))
+        };
+        let inside = step(&self.inside, [width, width.div_ceil(ROWS), count])?;
+        // One thread per finer sample that is less than a cell from a side.
+        let border = ((shape.size - 1) << shape.finer) + 1;
+        let borders = step(&self.borders, [border, 1 << shape.finer, 4 * count])?;
+        Ok(Job::new(gpu, "terrain/node", vec![inside, borders])?)
     }
 }
