@@ -3,6 +3,8 @@
 
 use relievo_testing as harness;
 
+use std::collections::HashSet;
+use std::ops::Range;
 use std::path::Path;
 
 use harness::gpu;
@@ -14,16 +16,19 @@ use serde_json::{Value, json};
 const WARM: usize = 4;
 const FRAMES: usize = 6;
 
-/// Bytes of compiled shaders in this process: memory that holds programs and is of no file.
-fn compiled() -> usize {
+/// Size of a page of memory, in bytes.
+const PAGE: usize = 4096;
+
+/// The pages of compiled shaders in this process: memory that holds programs and is of no file.
+fn compiled() -> HashSet<usize> {
     let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux");
-    let size = |line: &str| -> Option<usize> {
+    let pages = |line: &str| -> Option<Range<usize>> {
         let fields: Vec<&str> = line.split_whitespace().collect();
         let (from, to) = fields[0].split_once('-')?;
-        let bytes = usize::from_str_radix(to, 16).ok()? - usize::from_str_radix(from, 16).ok()?;
-        (fields[1] == "r-xp" && fields.len() == 5).then_some(bytes)
+        let [from, to] = [from, to].map(|address| usize::from_str_radix(address, 16).ok());
+        (fields[1] == "r-xp" && fields.len() == 5).then_some(from? / PAGE..to? / PAGE)
     };
-    maps.lines().filter_map(size).sum()
+    maps.lines().filter_map(pages).flatten().collect()
 }
 
 /// Bytes of shaders that a scene compiles in [`FRAMES`] frames after the first [`WARM`] ones, while its time goes on.
@@ -45,8 +50,10 @@ fn compiled_later(name: &str, change: &dyn Fn(&mut Value)) -> usize {
     };
     let before = frames(WARM);
     let after = frames(FRAMES);
-    println!("{name}: {} kB, {} more in {FRAMES} frames", before / 1024, (after - before) / 1024);
-    after - before
+    // Shaders that only loading needs may still be freed in the meantime.
+    let more = PAGE * after.difference(&before).count();
+    println!("{name}: {} kB, {} more in {FRAMES} frames", PAGE * before.len() / 1024, more / 1024);
+    more
 }
 
 /// Meshes, characters, patches, endless terrain of noise and its relief, with a shadow and a budget.
