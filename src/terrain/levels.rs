@@ -1,4 +1,4 @@
-//! Levels of subdivision on the device, one dispatch per level. This is the common part of the passes that run
+//! Levels of subdivision on the device, one or two dispatches per level. This is the common part of the passes that run
 //! `kernels/terrain/height.wgsl`, `smooth.wgsl` and `wrap.wgsl`.
 
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Kernel, Step, Uniform, Upload};
@@ -11,23 +11,58 @@ use crate::terrain::replace::{ReplaceBuffers, ReplacePass};
 use crate::terrain::window::{Lattice, Region, Regions, SMOOTH_RIM, Span, Window, Windows};
 use crate::{Error, InputError};
 
-/// A kernel that computes one level of subdivision from the next coarser level.
+/// The kernel that computes one level of subdivision from the next coarser level.
 #[derive(Debug, Clone)]
 pub(in crate::terrain) struct LevelPass {
     pub label: &'static str,
-    pub kernel: Kernel,
-    /// Creates the kernel's bind groups for one dispatch.
+    /// The dispatches of a level, in order.
+    pub stages: Vec<LevelStage>,
+    /// Creates the bind groups of a stage.
     pub bind: fn(&Gpu, &Kernel, LevelBuffers<'_>) -> Result<Vec<Group>, GpuError>,
     pub with_features: bool,
 }
 
-/// Buffers of one dispatch, which computes the lattice `fine` from the lattice `coarse`.
+/// A dispatch of the kernel.
+#[derive(Debug, Clone)]
+pub(in crate::terrain) struct LevelStage {
+    pub kernel: Kernel,
+    pub threads: LevelThreads,
+}
+
+/// What a thread of a stage computes.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::terrain) enum LevelThreads {
+    /// The four fine points that belong to a coarse point.
+    Points,
+    /// The center of a coarse cell that has another cell on every side.
+    Centers,
+}
+
+impl LevelThreads {
+    /// Number of threads along an edge of a window.
+    fn edge(self, level: &Level) -> u32 {
+        match self {
+            // Each row and column has one extra thread, because a window may start anywhere in a cell.
+            Self::Points => level.fine_width / 2 + 1,
+            Self::Centers => centers(level.coarse_width),
+        }
+    }
+}
+
+/// Number of centers along an edge of a window.
+fn centers(coarse_width: u32) -> u32 {
+    coarse_width - 3
+}
+
+/// Buffers of the dispatches that compute the lattice `fine` from the lattice `coarse`.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::terrain) struct LevelBuffers<'a> {
     pub level: &'a Uniform<Level>,
     pub origins: &'a Buffer<[i32; 2]>,
     pub coarse: &'a Buffer<i32>,
     pub fine: &'a Buffer<i32>,
+    /// Centers of coarse cells, which smooth interpolation needs; empty without.
+    pub centers: &'a Buffer<i32>,
     pub features: &'a FeatureIndex,
 }
 
@@ -72,7 +107,7 @@ impl LevelPass {
         InputError::check_within("coarser", coarser, 0..=config.levels().saturating_sub(1))?;
         let widths = level_widths(config, width, coarser);
         output.check_holds("output", points(width, count))?;
-        scratch.check(&widths, count)?;
+        scratch.check(config, &widths, count)?;
         let grids: Vec<u32> = widths[1..].iter().map(|width| width + 2 * (rim(config) - 1)).collect();
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };
         let features = FeatureIndex::new(gpu, &grids, count, capacity)?;
@@ -96,13 +131,13 @@ impl LevelPass {
                 origins: &starts,
                 coarse: if level == 0 { &base } else { &scratch.buffers[left % 2] },
                 fine: if left == 0 { output } else { &scratch.buffers[(left + 1) % 2] },
+                centers: &scratch.centers,
                 features: &features,
             };
-            let groups = (self.bind)(gpu, &self.kernel, buffers)?;
-            // One thread per coarse point. Each row and column has one extra thread, because a window may start anywhere in a
-            // cell.
-            let edge = params.fine_width / 2 + 1;
-            steps.push(Step::covering(&self.kernel, groups, [edge, edge, count]));
+            for LevelStage { kernel, threads } in &self.stages {
+                let edge = threads.edge(&params);
+                steps.push(Step::covering(kernel, (self.bind)(gpu, kernel, buffers)?, [edge, edge, count]));
+            }
             if let Some(given) = given.filter(|given| given.coarser == left as u32 + coarser) {
                 let width = params.fine_width;
                 let heights = Buffer::new(gpu, "given heights", points(width, count))?;
@@ -181,13 +216,21 @@ pub(crate) struct GivenHeights<'a> {
     pub coarser: u32,
 }
 
-/// Scratch memory for the levels between the base lattice and the output. Its size is about a third of the output's size. Jobs
-/// with the same configuration, count and apron may share one `HeightScratch`.
+/// Scratch memory for the levels between the base lattice and the output. Its size is about a third of the output's size, and a
+/// quarter more for smooth interpolation. Jobs with the same configuration, count and apron may share one `HeightScratch`.
 #[derive(Debug, Clone)]
 pub struct HeightScratch {
-    // Dispatches alternate between the two buffers. The last dispatch reads the first buffer; the dispatch before it reads
-    // the second.
+    // Levels alternate between the two buffers. The last level reads the first buffer; the level before it reads the second.
     buffers: [Buffer<i32>; 2],
+    // Centers of the cells from which a level is made.
+    centers: Buffer<i32>,
+}
+
+/// Number of points in each buffer of a [`HeightScratch`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ScratchPoints {
+    levels: [usize; 2],
+    centers: usize,
 }
 
 impl HeightScratch {
@@ -208,30 +251,38 @@ impl HeightScratch {
             HeightGenerator::DiamondSquare => level_widths(config, regions.width, regions.coarser),
             _ => vec![regions.width],
         };
-        let [first, second] = Self::points(&widths, regions.count);
+        let ScratchPoints { levels: [first, second], centers } = Self::points(config, &widths, regions.count);
         let buffer =
             |points| Buffer::new(gpu, "terrain scratch", points).map_err(|error| error.with_remedy(REMEDY));
-        Ok(Self { buffers: [buffer(first)?, buffer(second)?] })
+        Ok(Self { buffers: [buffer(first)?, buffer(second)?], centers: buffer(centers)? })
     }
 
-    /// Number of points in the largest level that each of the two buffers stores. The largest level is not always the finest:
-    /// with small patches, coarse levels can be wider. The base lattice and the output have their own buffers.
-    fn points(widths: &[u32], count: u32) -> [usize; 2] {
-        let mut most = [0; 2];
+    /// Number of points in the largest level that each buffer stores. The largest level is not always the finest: with small
+    /// patches, coarse levels can be wider. The base lattice and the output have their own buffers.
+    fn points(config: &TerrainConfig, widths: &[u32], count: u32) -> ScratchPoints {
+        let mut levels = [0; 2];
         for (left, width) in widths[1..].iter().rev().skip(1).enumerate() {
-            most[left % 2] = most[left % 2].max(points(*width, count));
+            levels[left % 2] = levels[left % 2].max(points(*width, count));
         }
-        most
+        let coarse = &widths[..widths.len() - 1];
+        let centers = match config.interpolation {
+            HeightInterpolation::Linear => 0,
+            HeightInterpolation::Smooth => {
+                coarse.iter().map(|width| points(centers(*width), count)).max().unwrap_or(0)
+            }
+        };
+        ScratchPoints { levels, centers }
     }
 
-    fn check(&self, widths: &[u32], count: u32) -> Result<(), InputError> {
-        let needed = Self::points(widths, count);
-        self.buffers.iter().zip(needed).try_for_each(|(buffer, needed)| buffer.check_holds("scratch", needed))
+    fn check(&self, config: &TerrainConfig, widths: &[u32], count: u32) -> Result<(), InputError> {
+        let needed = Self::points(config, widths, count);
+        let all = self.buffers.iter().zip(needed.levels).chain([(&self.centers, needed.centers)]);
+        all.into_iter().try_for_each(|(buffer, needed)| buffer.check_holds("scratch", needed))
     }
 
     /// Memory of the scratch buffers on the device, in bytes.
     pub fn bytes(&self) -> u64 {
-        self.buffers.iter().map(Buffer::bytes).sum()
+        self.buffers.iter().chain([&self.centers]).map(Buffer::bytes).sum()
     }
 }
 
@@ -398,21 +449,20 @@ mod tests {
     /// Each scratch buffer is exactly as large as the largest level that it ever holds.
     #[test]
     fn scratch_holds_what_dispatches_leave() {
-        let points = |size, coarse_levels, apron: u32| {
-            let config = TerrainConfig { coarse_levels, ..TerrainConfig::new(size, 1.0, "").expect("valid") };
-            HeightScratch::points(&level_widths(&config, config.patch_size + 2 * apron, 0), 3)
+        let scratch = |config: TerrainConfig, apron: u32| {
+            let widths = level_widths(&config, config.patch_size + 2 * apron, 0);
+            HeightScratch::points(&config, &widths, 3)
         };
+        let linear = |size| TerrainConfig::new(size, 1.0, "").expect("valid");
+        let of = |levels, centers| ScratchPoints { levels, centers };
         // The levels below the output are 131, 68, 36, 20, … points wide, from fine to coarse.
-        assert_eq!(points(257, 0, 0), [3 * 131 * 131, 3 * 68 * 68]);
-        assert_eq!(points(3, 0, 0), [0, 0], "one dispatch");
-        assert_eq!(points(5, 0, 0), [3 * 5 * 5, 0], "two");
+        assert_eq!(scratch(linear(257), 0), of([3 * 131 * 131, 3 * 68 * 68], 0));
+        assert_eq!(scratch(linear(3), 0), of([0, 0], 0), "one level");
+        assert_eq!(scratch(linear(5), 0), of([3 * 5 * 5, 0], 0), "two");
         // For 3 samples with smooth interpolation, the levels below the output are 9, 12, 13, 14, 14, … points wide.
-        let smooth = TerrainConfig {
-            interpolation: HeightInterpolation::Smooth,
-            coarse_levels: 8,
-            ..TerrainConfig::new(3, 1.0, "").expect("valid")
-        };
-        assert_eq!(HeightScratch::points(&level_widths(&smooth, smooth.patch_size, 0), 3), [3 * 14 * 14; 2]);
+        let smooth =
+            TerrainConfig { interpolation: HeightInterpolation::Smooth, coarse_levels: 8, ..linear(3) };
+        assert_eq!(scratch(smooth, 0), of([3 * 14 * 14; 2], 3 * 11 * 11));
     }
 
     /// The computed level widths are enough for every window, whatever its position relative to the coarse lattices.

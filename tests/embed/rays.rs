@@ -36,9 +36,19 @@ pub fn ray(camera: &Camera, pixel: [f64; 2]) -> [DVec3; 2] {
 }
 
 /// The first triangle that a ray meets.
-pub fn first(triangles: &[Triangle], [from, along]: [DVec3; 2]) -> Option<Hit> {
+pub fn first(triangles: &[Triangle], ray: [DVec3; 2]) -> Option<Hit> {
+    first_of(triangles, 0..triangles.len(), ray)
+}
+
+/// The first of some triangles that a ray meets.
+fn first_of(
+    triangles: &[Triangle],
+    some: impl IntoIterator<Item = usize>,
+    [from, along]: [DVec3; 2],
+) -> Option<Hit> {
     let mut nearest: Option<(f64, Hit)> = None;
-    for (at, triangle) in triangles.iter().enumerate() {
+    for at in some {
+        let triangle = &triangles[at];
         let [a, b, c] = triangle.corners;
         let (u, v) = (b - a, c - a);
         let normal = u.cross(v);
@@ -65,16 +75,37 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
     let [width, height] = camera.viewport;
     let pixels = (0..width * height).map(|at| [at % width, at / width].map(|edge| f64::from(edge) + 0.5));
     let tag = |hit: &Option<Hit>| hit.as_ref().map(|hit| triangles[hit.triangle].tag);
+    let balls: Vec<(DVec3, f64)> = triangles.iter().map(ball).collect();
     pixels
         .map(|[x, y]| {
-            let middle = first(triangles, ray(camera, [x, y]));
+            let middle = ray(camera, [x, y]);
             let beside = [[-0.01, 0.0], [0.01, 0.0], [0.0, -0.01], [0.0, 0.01]];
-            let is_sure = beside
-                .iter()
-                .all(|[dx, dy]| tag(&first(triangles, ray(camera, [x + dx, y + dy]))) == tag(&middle));
-            if is_sure { Ok(middle) } else { Err(()) }
+            let beside = beside.map(|[dx, dy]| ray(camera, [x + dx, y + dy]));
+            let apart = [0, 1]
+                .map(|part| beside.iter().map(|ray| (ray[part] - middle[part]).length()).fold(0.0, f64::max));
+            let is_near = |at: &usize| may_meet(balls[*at], middle, apart);
+            let some: Vec<usize> = (0..triangles.len()).filter(is_near).collect();
+            let first = |ray| first_of(triangles, some.iter().copied(), ray);
+            let seen = first(middle);
+            let is_sure = beside.iter().all(|ray| tag(&first(*ray)) == tag(&seen));
+            if is_sure { Ok(seen) } else { Err(()) }
         })
         .collect()
+}
+
+/// A ball around a triangle: its middle and its radius.
+fn ball(triangle: &Triangle) -> (DVec3, f64) {
+    let corners = triangle.corners;
+    let middle = corners.into_iter().sum::<DVec3>() / 3.0;
+    (middle, corners.iter().map(|corner| (corner - middle).length()).fold(0.0, f64::max))
+}
+
+/// Whether a ray may meet a ball, or one whose start and direction are at most `apart` from it.
+fn may_meet((middle, radius): (DVec3, f64), [from, along]: [DVec3; 2], apart: [f64; 2]) -> bool {
+    let offset = middle - from;
+    let farthest = offset.length() + radius + apart[0];
+    let reach = radius + apart[0] + farthest * apart[1] + 1e-9 * farthest;
+    (offset - offset.dot(along) * along).length_squared() <= reach * reach
 }
 
 /// The matrix of a placement, relative to cell (0, 0, 0).

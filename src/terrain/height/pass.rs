@@ -4,7 +4,7 @@ use crate::gpu::bindings::terrain::height as bindings;
 use crate::gpu::{Gpu, GpuError, Group, Kernel};
 use crate::terrain::config::{Border, HeightInterpolation, Offset, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::levels::{HeightBuffers, HeightJob, LevelBuffers, LevelPass};
+use crate::terrain::levels::{HeightBuffers, HeightJob, LevelBuffers, LevelPass, LevelStage, LevelThreads};
 use crate::terrain::window::Windows;
 use crate::{Error, InputError};
 
@@ -22,7 +22,8 @@ impl HeightPass {
         let distribution = offset.code();
         let constants = bindings::Constants { distribution, features: features.map_or(0, FeatureMode::code) };
         let kernel = bindings::kernel(gpu, &constants)?;
-        Ok(Self(LevelPass { label: "terrain/height", kernel, bind, with_features: features.is_some() }))
+        let stages = vec![LevelStage { kernel, threads: LevelThreads::Points }];
+        Ok(Self(LevelPass { label: "terrain/height", stages, bind, with_features: features.is_some() }))
     }
 
     /// Prepares the generation of `windows`. `feature_capacity` is the largest number of injected points. A point counts once for
@@ -55,7 +56,7 @@ impl HeightPass {
 }
 
 fn bind(gpu: &Gpu, kernel: &Kernel, buffers: LevelBuffers<'_>) -> Result<Vec<Group>, GpuError> {
-    let LevelBuffers { level, origins, coarse, fine, features } = buffers;
+    let LevelBuffers { level, origins, coarse, fine, features, .. } = buffers;
     let (origins, coarse, fine) = (origins.slice(), coarse.slice(), fine.slice());
     let group = bindings::Group { level, origins, coarse, fine };
     let injected = bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };

@@ -1,10 +1,11 @@
-//! The GPU pass of `kernels/terrain/smooth.wgsl`: one dispatch per level, for a batch of windows.
+//! The GPU pass of `kernels/terrain/smooth.wgsl`: two dispatches per level, for a batch of windows.
 
 use crate::gpu::bindings::terrain::smooth as bindings;
 use crate::gpu::{Gpu, GpuError, Group, Kernel};
+use crate::shared::terrain::smooth::{CENTERS, EDGES};
 use crate::terrain::config::{HeightInterpolation, Offset, TerrainConfig};
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::levels::{HeightBuffers, HeightJob, LevelBuffers, LevelPass};
+use crate::terrain::levels::{HeightBuffers, HeightJob, LevelBuffers, LevelPass, LevelStage, LevelThreads};
 use crate::terrain::window::Windows;
 use crate::{Error, InputError};
 
@@ -20,9 +21,13 @@ impl SmoothPass {
     /// Shader compilation errors of the driver.
     pub fn new(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<Self, GpuError> {
         let distribution = offset.code();
-        let constants = bindings::Constants { distribution, features: features.map_or(0, FeatureMode::code) };
-        let kernel = bindings::kernel(gpu, &constants)?;
-        Ok(Self(LevelPass { label: "terrain/smooth", kernel, bind, with_features: features.is_some() }))
+        let code = features.map_or(0, FeatureMode::code);
+        let stage = |stage, threads| {
+            let constants = bindings::Constants { stage, distribution, features: code };
+            Ok::<_, GpuError>(LevelStage { kernel: bindings::kernel(gpu, &constants)?, threads })
+        };
+        let stages = vec![stage(CENTERS, LevelThreads::Centers)?, stage(EDGES, LevelThreads::Points)?];
+        Ok(Self(LevelPass { label: "terrain/smooth", stages, bind, with_features: features.is_some() }))
     }
 
     /// Prepares the generation of `windows`. `feature_capacity` is the largest number of injected points. A point counts once for
@@ -49,9 +54,9 @@ impl SmoothPass {
 }
 
 fn bind(gpu: &Gpu, kernel: &Kernel, buffers: LevelBuffers<'_>) -> Result<Vec<Group>, GpuError> {
-    let LevelBuffers { level, origins, coarse, fine, features } = buffers;
+    let LevelBuffers { level, origins, coarse, fine, centers, features } = buffers;
     let (origins, coarse, fine) = (origins.slice(), coarse.slice(), fine.slice());
-    let group = bindings::Group { level, origins, coarse, fine };
+    let group = bindings::Group { level, origins, coarse, fine, centers: centers.slice() };
     let injected = bindings::Group1 { feature_words: features.words(), feature_heights: features.heights() };
     Ok(vec![group.bind(gpu, kernel)?, injected.bind(gpu, kernel)?])
 }

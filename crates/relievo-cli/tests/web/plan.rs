@@ -22,9 +22,11 @@ const VALUES: &[(&str, &str, &[f64])] = &[
     ("terrain/despike", "FEATURES", &[0.0, 1.0]),
     ("terrain/height", "DISTRIBUTION", &[0.0, 1.0, 2.0]),
     ("terrain/height", "FEATURES", &[0.0, 1.0, 2.0]),
+    ("terrain/node", "STAGE", &[0.0, 1.0]),
     ("terrain/noise", "GENERATOR", &[0.0, 1.0, 2.0]),
     ("terrain/smooth", "DISTRIBUTION", &[0.0, 1.0, 2.0]),
     ("terrain/smooth", "FEATURES", &[0.0, 1.0, 2.0]),
+    ("terrain/smooth", "STAGE", &[0.0, 1.0]),
     ("terrain/wrap", "DISTRIBUTION", &[0.0, 1.0, 2.0]),
     ("terrain/wrap", "FEATURES", &[0.0, 1.0, 2.0]),
 ];
