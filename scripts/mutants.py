@@ -7,7 +7,8 @@
 A fault is an operator, a constant or a bound of a function that is changed to another of the same length. The flat
 WGSL lies in the programs as text, so a fault is planted in copies of the programs, without compiling. A fault that
 the shader compiler refuses is drawn again. Each fault goes through `relievo verify --only STEM` for the shaders that
-have the function, then through the test programs `golden`, `embed` and those of the shader's domain, until one sees it.
+have the function. Those that it does not see go through the test programs `golden`, `embed` and those of the shader's
+domain, until one sees them.
 Exit status 1 if any fault stays unseen: look at it, and show that it is equivalent or write the missing case.
 """
 
@@ -16,7 +17,6 @@ import json
 import os
 import random
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -137,26 +137,30 @@ def stems(texts: dict[str, bytes], function: bytes) -> list[str]:
     return [name for name, text in texts.items() if function in text]
 
 
-def seen_by(fault: Fault, texts: dict[str, bytes], all_programs: dict[str, Path], folder: Path) -> str | None:
-    """What sees a fault: empty if nothing does, none if the fault is no shader."""
-    names = stems(texts, fault.function)
-    kernels = [name for name in names if not name.startswith("render/")]
-    attempts = [("relievo", ["verify", "--only", stem]) for stem in kernels]
+def attempts(fault: Fault, texts: dict[str, bytes], known: dict[str, Path]) -> tuple[list, list]:
+    """The programs with arguments that may see a fault: `relievo verify`, and the test programs, which take longer."""
+    kernels = [name for name in stems(texts, fault.function) if not name.startswith("render/")]
     domains = [name.split("/")[0] for name in kernels]
-    attempts += [(name, []) for name in ["golden", "embed", *dict.fromkeys(domains)] if name in all_programs]
+    tests = [name for name in ["golden", "embed", *dict.fromkeys(domains)] if name in known]
+    return [("relievo", ["verify", "--only", stem]) for stem in kernels], [(name, []) for name in tests]
+
+
+def seen_by(fault: Fault, tried: list, all_programs: dict[str, Path]) -> str | None:
+    """Which of the programs sees a fault: empty if none does, none if the fault is no shader."""
     copies: dict[str, Path | None] = {}
-    for name, rest in attempts:
-        if name not in copies:
-            copies[name] = fault.plant(all_programs[name], folder)
-        copy = copies[name]
-        if copy is None:
-            continue
-        status, output = run(copy, *rest)
-        if status == 0 or (rest and status == 2 and "no case" in output):
-            continue
-        if status != 124 and REFUSED.search(output):
-            return None
-        return " ".join([name, *rest]) + (" (hangs)" if status == 124 else "")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, rest in tried:
+            if name not in copies:
+                copies[name] = fault.plant(all_programs[name], Path(folder))
+            copy = copies[name]
+            if copy is None:
+                continue
+            status, output = run(copy, *rest)
+            if status == 0 or (rest and status == 2 and "no case" in output):
+                continue
+            if status != 124 and REFUSED.search(output):
+                return None
+            return " ".join([name, *rest]) + (" (hangs)" if status == 124 else "")
     return ""
 
 
@@ -173,26 +177,40 @@ def main() -> None:
         sys.exit(f"`relievo verify` fails without a fault: {output}")
     draw = random.Random(chosen.seed)
     tried: set[bytes] = set()
-    found, refused = [], 0
-    with tempfile.TemporaryDirectory() as folder:
-        while len(found) < chosen.count:
-            name = names[(len(found) + refused) % len(names)] if chosen.only else draw.choice(names)
-            function = draw.choice([match[0] for match in FUNCTION.finditer(texts[name])])
-            faults = faults_of(function)
-            if not faults:
-                continue
-            fault = Fault(name, function, *draw.choice(faults))
-            if fault.planted in tried:
-                continue
-            tried.add(fault.planted)
-            by = seen_by(fault, texts, all_programs, Path(folder))
+    found: list[dict[str, str]] = []
+    refused = 0
+
+    def drawn() -> Fault:
+        while True:
+            name = names[len(tried) % len(names)] if chosen.only else draw.choice(names)
+            faults = faults_of(function := draw.choice([match[0] for match in FUNCTION.finditer(texts[name])]))
+            if faults and (fault := Fault(name, function, *draw.choice(faults))).planted not in tried:
+                tried.add(fault.planted)
+                return fault
+
+    def tell(fault: Fault, by: str) -> None:
+        found.append({"fault": str(fault), "seen_by": by})
+        print(f"{len(found):3} {'seen by ' + by if by else 'NOT SEEN'}: {fault}", flush=True)
+
+    while len(found) < chosen.count:
+        unseen = []
+        while len(found) + len(unseen) < chosen.count:
+            fault = drawn()
+            verify, tests = attempts(fault, texts, all_programs)
+            by = seen_by(fault, verify, all_programs)
+            if by:
+                tell(fault, by)
+            elif by is None:
+                refused += 1
+            else:
+                unseen.append((fault, tests))
+        print(f"{len(unseen)} faults are left to the test programs", flush=True)
+        for fault, tests in unseen:
+            by = seen_by(fault, tests, all_programs)
             if by is None:
                 refused += 1
-                continue
-            found.append({"fault": str(fault), "seen_by": by})
-            print(f"{len(found):3} {'seen by ' + by if by else 'NOT SEEN'}: {fault}", flush=True)
-            for copy in Path(folder).iterdir():
-                copy.unlink() if copy.is_file() else shutil.rmtree(copy)
+            else:
+                tell(fault, by)
     seen = sum(bool(entry["seen_by"]) for entry in found)
     print(f"{seen} of {len(found)} faults seen; {refused} more were no shaders")
     if chosen.json:
