@@ -29,12 +29,12 @@ pub(in crate::terrain) struct LevelStage {
     pub threads: LevelThreads,
 }
 
-/// What a thread of a stage computes.
+/// The work of one thread of a stage.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::terrain) enum LevelThreads {
-    /// The four fine points that belong to a coarse point.
+    /// Computes the four fine points that belong to a coarse point.
     Points,
-    /// The center of a coarse cell that has another cell on every side.
+    /// Computes the center of a coarse cell that has another cell on every side.
     Centers,
 }
 

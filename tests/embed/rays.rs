@@ -75,7 +75,7 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
     let [width, height] = camera.viewport;
     let pixels = (0..width * height).map(|at| [at % width, at / width].map(|edge| f64::from(edge) + 0.5));
     let tag = |hit: &Option<Hit>| hit.as_ref().map(|hit| triangles[hit.triangle].tag);
-    let balls: Vec<(DVec3, f64)> = triangles.iter().map(ball).collect();
+    let balls: Vec<Ball> = triangles.iter().map(Ball::around).collect();
     pixels
         .map(|[x, y]| {
             let middle = ray(camera, [x, y]);
@@ -83,7 +83,7 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
             let beside = beside.map(|[dx, dy]| ray(camera, [x + dx, y + dy]));
             let apart = [0, 1]
                 .map(|part| beside.iter().map(|ray| (ray[part] - middle[part]).length()).fold(0.0, f64::max));
-            let is_near = |at: &usize| may_meet(balls[*at], middle, apart);
+            let is_near = |at: &usize| balls[*at].may_meet(middle, apart);
             let some: Vec<usize> = (0..triangles.len()).filter(is_near).collect();
             let first = |ray| first_of(triangles, some.iter().copied(), ray);
             let seen = first(middle);
@@ -93,19 +93,27 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
         .collect()
 }
 
-/// A ball around a triangle: its middle and its radius.
-fn ball(triangle: &Triangle) -> (DVec3, f64) {
-    let corners = triangle.corners;
-    let middle = corners.into_iter().sum::<DVec3>() / 3.0;
-    (middle, corners.iter().map(|corner| (corner - middle).length()).fold(0.0, f64::max))
+/// A ball around a triangle.
+struct Ball {
+    middle: DVec3,
+    radius: f64,
 }
 
-/// Whether a ray may meet a ball, or one whose start and direction are at most `apart` from it.
-fn may_meet((middle, radius): (DVec3, f64), [from, along]: [DVec3; 2], apart: [f64; 2]) -> bool {
-    let offset = middle - from;
-    let farthest = offset.length() + radius + apart[0];
-    let reach = radius + apart[0] + farthest * apart[1] + 1e-9 * farthest;
-    (offset - offset.dot(along) * along).length_squared() <= reach * reach
+impl Ball {
+    fn around(triangle: &Triangle) -> Self {
+        let corners = triangle.corners;
+        let middle = corners.into_iter().sum::<DVec3>() / 3.0;
+        let radius = corners.iter().map(|corner| (corner - middle).length()).fold(0.0, f64::max);
+        Self { middle, radius }
+    }
+
+    /// Whether a ray may meet the ball, or a ray whose start and direction are at most `apart` from it.
+    fn may_meet(&self, [from, along]: [DVec3; 2], apart: [f64; 2]) -> bool {
+        let offset = self.middle - from;
+        let farthest = offset.length() + self.radius + apart[0];
+        let reach = self.radius + apart[0] + farthest * apart[1] + 1e-9 * farthest;
+        (offset - offset.dot(along) * along).length_squared() <= reach * reach
+    }
 }
 
 /// The matrix of a placement, relative to cell (0, 0, 0).

@@ -1,7 +1,7 @@
 //! `prepare` refuses buffers, sizes and parameters that do not fit, and names the field. It accepts what just fits.
 
 use relievo::Error;
-use relievo::gpu::{Buffer, Gpu, Options};
+use relievo::gpu::{Buffer, Gpu};
 use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, Shading, WeightMode};
 use relievo::ops::terrain::border::BorderPass;
 use relievo::ops::terrain::config::{Border, Offset, TerrainConfig};
@@ -20,9 +20,7 @@ use relievo::ops::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 use relievo::ops::terrain::window::Windows;
 use relievo::ops::terrain::wrap::WrapPass;
 
-fn gpu() -> Gpu {
-    Gpu::headless(&Options::default()).expect("the suite needs an adapter")
-}
+use crate::harness::gpu;
 
 #[track_caller]
 fn refuses<T>(result: Result<T, Error>, parts: &[&str]) {
