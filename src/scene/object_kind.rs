@@ -212,14 +212,24 @@ impl dyn ObjectKind {
     }
 }
 
+/// A view of a frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ViewOfFrame<'a> {
+    pub camera: &'a Camera,
+    /// Number of the view in the frame.
+    pub number: usize,
+    /// Whether the view was in the last frame too, and its picture goes on.
+    pub is_next: bool,
+}
+
 /// Resources that a kind of object keeps for one view.
 pub(super) trait KindInView: Debug + wgpu::WasmNotSendSync {
     /// Bind group 1 in this view.
     fn group(&self) -> &Group;
 
-    /// Stages the resources for a frame that is seen through `camera`. `number` is the view's number in the frame. Returns one
-    /// bit per instance of the object, whether the view draws it; an empty list leaves all bits as they are, at first 1.
-    fn stage(&self, staged: &mut Staged, camera: &Camera, number: usize) -> Result<Vec<u32>, Error>;
+    /// Stages the resources for a frame. Returns one bit per instance of the object, whether the view draws it; an empty list
+    /// leaves all bits as they are, at first 1.
+    fn stage(&self, staged: &mut Staged, view: ViewOfFrame<'_>) -> Result<Vec<u32>, Error>;
 }
 
 /// A future that creates an object's resources on another device. Outside browsers, it may move to another thread.

@@ -117,11 +117,17 @@ pub(crate) fn region_of(
 }
 
 /// Heights of a region of `seamless` terrain at its samples' own resolution, after the recipe's erosion, which moves heights by at most
-/// `limit`. The region must be valid with [`Recipe::apron`] samples around it. The recipe must have no despiking.
-pub fn eroded_region(recipe: &Recipe, limit: ErosionLimit, own: Region) -> Vec<i32> {
+/// `limit`. `given` are heights before erosion, as for [`region_of`]. The region must be valid with [`Recipe::apron`] samples around it.
+/// The recipe must have no despiking.
+pub(crate) fn eroded_region(
+    recipe: &Recipe,
+    limit: ErosionLimit,
+    given: Option<&Given<'_>>,
+    own: Region,
+) -> Vec<i32> {
     let apron = recipe.apron(0);
     let around = own.grown(apron);
-    let window = region(&recipe.config, &recipe.features, around);
+    let window = region_of(&recipe.config, &recipe.features, given, around);
     let inside = |row: &[i32]| row[apron as usize..(apron + own.width) as usize].to_vec();
     let rows = window.chunks_exact(around.width as usize).skip(apron as usize).take(own.width as usize);
     let origins: Vec<i32> = rows.flat_map(inside).collect();

@@ -17,7 +17,7 @@ use relievo::scene::{
 use crate::endless::{Path, ROUNDING, World, flight, holes, largest, offsets, picture, some};
 use crate::harness::Difference;
 
-fn config() -> TerrainConfig {
+pub fn config() -> TerrainConfig {
     TerrainConfig {
         coarse_levels: 6,
         interpolation: HeightInterpolation::Smooth,
@@ -26,7 +26,7 @@ fn config() -> TerrainConfig {
 }
 
 /// A map of waves, sharp ridges and stones.
-fn map(first: [i32; 2], size: [u32; 2], spacing: u32, margin: u32) -> ElevationMap {
+pub fn map(first: [i32; 2], size: [u32; 2], spacing: u32, margin: u32) -> ElevationMap {
     let height = |at: u32| {
         let [x, y] = [at % size[0], at / size[0]].map(|at| f64::from(at * spacing));
         let stone = f64::from((at.wrapping_mul(2_654_435_761) >> 24) % 8) * 0.2;

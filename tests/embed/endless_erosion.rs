@@ -8,9 +8,10 @@ use glam::DVec3;
 use relievo::ops::terrain::field::field;
 use relievo::ops::terrain::hydraulic::Hydraulic;
 use relievo::ops::terrain::thermal::Thermal;
+use relievo::ops::terrain::thermal::reference::thermal as thermal_reference;
 use relievo::scene::{
-    Camera, ElevationLayout, ElevationMap, ElevationTiles, EndlessLimits, FeatureMode, Quality, Ray, Scene,
-    TerrainConfig, TerrainFeatures, TerrainMorph, TerrainRecipe, TerrainSource,
+    Camera, ElevationTiles, EndlessLimits, FeatureMode, Quality, Ray, Scene, TerrainConfig, TerrainFeatures,
+    TerrainMorph, TerrainRecipe, TerrainSource,
 };
 
 use crate::edited::features;
@@ -241,6 +242,71 @@ fn a_place_has_one_picture() {
     assert!(difference.outliers > 0.01, "{difference:?}");
 }
 
+/// Erosion of an elevation map, of the terrain's own spacing and of a coarser one: inside the map, across its border, and around it, the
+/// host has the heights of the terrain without erosion, eroded by the reference, and the device draws them.
+#[test]
+fn an_elevation_map_is_eroded() {
+    for (spacing, margin) in [(1, 0), (8, 6)] {
+        let config = crate::elevation::config();
+        let map = crate::elevation::map([-60, -70], [90, 100], spacing, margin);
+        let tiles = Arc::new(ElevationTiles::new(&config, &map).expect("valid"));
+        let thermal = Thermal { iterations: 3, talus: 20.0 };
+        let [mut eroded, plain] = [Some(thermal), None].map(|thermal| {
+            let recipe = TerrainRecipe { thermal, ..TerrainRecipe::new(config.clone()) };
+            World::of(&near(recipe).with_elevation(tiles.clone()), [160, 90])
+        });
+        let ground = |world: &World, at: [f64; 2]| {
+            world.scene.ground(world.land, at[0], at[1]).expect("valid").expect("ground").height
+        };
+        // One window inside the map, one across its border, and one beyond its margin, which is eroded from the border inwards.
+        let (wide, rings) = (24_usize, thermal.iterations as usize);
+        let west = -60 * i64::from(spacing);
+        let mut most = 0.0_f64;
+        for first in [[-10, -15], [west - 12, -20], [west - i64::from(margin * spacing) - 22, 0]] {
+            let at = |column: usize, row: usize| [first[0] + column as i64, first[1] + row as i64];
+            let height =
+                |world: &World, at: [i64; 2]| (ground(world, at.map(|at| at as f64)) * 65_536.0) as i32;
+            let cells = || (0..wide).flat_map(|row| (0..wide).map(move |column| (column, row)));
+            let before: Vec<i32> = cells().map(|(column, row)| height(&plain, at(column, row))).collect();
+            let mut window = before.clone();
+            for ring in 0..rings {
+                window = thermal_reference(&window, wide - 2 * ring, thermal.fixed_threshold(1.0));
+            }
+            let (inside, limit) = (wide - 2 * rings, (DEPTH * 65_536.0) as i32);
+            for (index, moved) in window.iter().enumerate() {
+                let (column, row) = (index % inside + rings, index / inside + rings);
+                let before = before[row * wide + column];
+                let expected = before + (moved - before).clamp(-limit, limit);
+                assert_eq!(
+                    height(&eroded, at(column, row)),
+                    expected,
+                    "{spacing}: {column} {row} of {first:?}"
+                );
+                most = most.max(f64::from(expected - before).abs() / 65_536.0);
+            }
+        }
+        println!("spacing {spacing}: erosion moves heights by {most}");
+        assert!(most > 0.1, "erosion moves heights by {most}");
+        let mut without = 0.0_f64;
+        for (at, above) in [([10.0, 20.0], 3.0), ([west as f64 - 4.0, 60.0], 12.0), ([300.0, 500.0], 120.0)] {
+            let camera = eroded.above(at, above);
+            eroded.view.set(camera).expect("valid");
+            eroded.settle();
+            let drawn = eroded.positions(&camera);
+            let some = some(&drawn, 7);
+            let [off, plain] = [&eroded, &plain]
+                .map(|world| largest(&offsets(&|x, z| ground(world, [x, z]), &camera, &some)));
+            println!(
+                "spacing {spacing}, {above} above: {off} px off, {plain} from the ground without erosion"
+            );
+            assert!(off <= 1.0 + ROUNDING, "{off} px");
+            assert_eq!(holes(&eroded, &camera, &drawn), 0);
+            without = without.max(plain);
+        }
+        assert!(without > 1.5, "{without} px from the ground without erosion");
+    }
+}
+
 #[test]
 fn nodes_are_made_again_after_a_loss() {
     crate::endless::a_loss_leaves_no_trace(&near(recipe()));
@@ -313,13 +379,6 @@ fn erosion_out_of_bounds_is_refused() {
     assert_eq!(refused(deep(0.0)), "erosion_depth");
     assert_eq!(refused(deep(f64::NAN)), "erosion_depth");
     assert_eq!(refused(deep(1001.0)), "erosion_depth");
-    let map = ElevationMap {
-        layout: ElevationLayout { spacing: 1, first: [0, 0], size: [8, 8] },
-        heights: vec![0.0; 64],
-        margin: 0,
-    };
-    let tiles = ElevationTiles::new(&config(), &map).expect("valid");
-    assert_eq!(refused(source(recipe()).with_elevation(Arc::new(tiles))), "recipe");
     let many = Some(Thermal { iterations: 127, talus: 20.0 });
     assert_eq!(refused(source(TerrainRecipe { thermal: many, ..recipe() })), "iterations");
     let target = source(recipe()).with_target(TerrainRecipe::new(config()), TerrainMorph::default());

@@ -4,6 +4,7 @@
 mod attached;
 mod characters;
 mod geomorph;
+mod ground;
 
 use glam::{DMat4, DVec3, Vec3};
 use relievo::asset::material::Alpha;

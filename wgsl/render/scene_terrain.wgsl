@@ -19,6 +19,17 @@ const LINE_COLOR: vec3<f32> = vec3<f32>(0.35, 0.75, 0.5);
 // Linear colour of the ground between the edges of the wireframe.
 const DARK_COLOR: vec3<f32> = vec3<f32>(0.01, 0.014, 0.02);
 
+// What a view allows to the vertices of endless terrain in a frame.
+struct TerrainFrame {
+    // Cameras that decide levels of detail; the first `camera_count` are valid. Positions are relative to the corner of the view's
+    // cell in this frame.
+    cameras: array<LodCamera, 4>,
+    // Number of valid cameras; 0 for terrain of one resolution, which does not morph.
+    camera_count: u32,
+    // Factor of the displacement that the cameras allow: the fraction that levels of detail may use.
+    fraction: f32,
+}
+
 // Placement of a terrain's samples in a view. Positions are relative to a sample near the view, so that they are precise far
 // from the terrain's origin. A sample that several patches share has bit-identical positions in all of them.
 struct TerrainView {
@@ -28,13 +39,14 @@ struct TerrainView {
     rest: vec3<f32>,
     // Number of the object, counted from 1.
     object: u32,
-    // Cameras that decide levels of detail; the first `camera_count` are valid.
-    cameras: array<LodCamera, 4>,
-    // Number of valid cameras; 0 for terrain of one resolution, which does not morph.
-    camera_count: u32,
-    // Factor of the displacement that the cameras allow: the fraction that levels of detail may use.
-    fraction: f32,
+    // What the view allows in this frame (`THIS_FRAME`) and in its last one (`LAST_FRAME`).
+    frames: array<TerrainFrame, 2>,
 }
+
+// Index of this frame in `TerrainView`.
+const THIS_FRAME = 0u;
+// Index of the view's last frame in `TerrainView`. If the view was not in the last frame, it equals this frame.
+const LAST_FRAME = 1u;
 
 // How a node of endless terrain is drawn in a view. A limit is an allowed displacement in world units: where the view allows as much,
 // a vertex has moved onto the triangles of the next coarser level.
@@ -193,13 +205,13 @@ fn stitched(node: TerrainNode, at: vec2<u32>) -> vec2<u32> {
     return at - back + on;
 }
 
-// The displacement that the cameras allow to a vertex, in world units, wherever erosion has moved it.
-fn allowed_at(position: vec3<f32>) -> f32 {
+// The displacement that the cameras of a frame allow to a vertex, in world units, wherever erosion has moved it.
+fn allowed_at(position: vec3<f32>, frame: u32) -> f32 {
     var allowed = MAX_ALLOWED;
-    for (var index = 0u; index < min(ground.camera_count, 4u); index++) {
-        allowed = min(allowed, camera_allows(ground.cameras[index], position, terrain.erosion_depth));
+    for (var index = 0u; index < min(ground.frames[frame].camera_count, 4u); index++) {
+        allowed = min(allowed, camera_allows(ground.frames[frame].cameras[index], position, terrain.erosion_depth));
     }
-    return ground.fraction * allowed;
+    return ground.frames[frame].fraction * allowed;
 }
 
 // How much of its erosion a vertex of a node shows, 0 to 1: what is missing is at most half of what the cameras allow.
@@ -230,13 +242,25 @@ fn hole_at(patch_of: TerrainPatch, at: vec2<u32>) -> f32 {
     return select(0.0, f32((word >> (bit % 32u)) & 1u), patch_of.holes != 0u);
 }
 
-// Places a vertex of a patch. A sample gets bit-identical positions in all patches, so that patches that share an edge leave no
-// crack. Values of the result: column and row in the patch, how far the vertex has moved onto the next coarser level, and the height in
-// world units (w). For the wireframe, xyz are barycentric coordinates: 1 at one corner of each triangle, 0 at the others. Words: the
-// patch's window and level.
-fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
+// A vertex of a patch as a frame draws it.
+struct GroundVertex {
+    // Column and row in the patch.
+    at: vec2<u32>,
+    // How far shading has moved from the node's finer normals to the vertices' own, which are those of the next coarser level, 0 to 1.
+    coarse: f32,
+    // Position in the view, in world units.
+    position: vec3<f32>,
+    // Height in world units.
+    height: f32,
+    // Height gradient, as differences over two samples.
+    gradient: vec2<f32>,
+}
+
+// Places a vertex of a patch in a frame of the view. A sample gets bit-identical positions in all patches, so that patches that
+// share an edge leave no crack.
+fn ground_vertex(instance: u32, vertex: u32, frame: u32) -> GroundVertex {
     let patch_of = patches[instance];
-    let is_node = ground.camera_count != 0u;
+    let is_node = ground.frames[frame].camera_count != 0u;
     let node = nodes[select(0u, instance, is_node)];
     let corner = vec2<u32>(vertex % terrain.size, vertex / terrain.size);
     let at = select(corner, stitched(node, corner), is_node);
@@ -247,9 +271,9 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
     let sample = ground.rest + vec3<f32>(sample_index.x * terrain.spacing, 0.0, sample_index.y * terrain.spacing);
     var height = f32(heights[center]) / 65536.0;
     var gradient = gradient_of(center, 1u);
-    var factor = 0.0;
+    var coarse = 0.0;
     if is_node {
-        let allowed = allowed_at(sample + vec3<f32>(0.0, height, 0.0));
+        let allowed = allowed_at(sample + vec3<f32>(0.0, height, 0.0), frame);
         var erosion = Erosion(0u, 0.0);
         if patch_of.eroded != patch_of.window {
             let windows = patch_of.eroded - patch_of.window;
@@ -257,7 +281,9 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
             height = height_at(center, erosion);
             gradient = gradient_at(center, 1u, erosion);
         }
-        factor = morphed(limit_of(node, at), allowed);
+        let factor = morphed(limit_of(node, at), allowed);
+        // Finer normals are those of eroded heights. Where no erosion is left, coarser nodes follow, which have none.
+        coarse = select(factor, max(factor, 1.0 - erosion.weight), patch_of.eroded != patch_of.window);
         let half = coarser_half(at);
         let one = u32(i32(center) + half.y * i32(terrain.in_width) + half.x);
         let other = u32(i32(center) - half.y * i32(terrain.in_width) - half.x);
@@ -268,23 +294,33 @@ fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
             gradient = mix(gradient, 0.5 * (gradient_at(one, 2u, erosion) + gradient_at(other, 2u, erosion)), factor);
         }
     }
-    var values = vec4<f32>(vec2<f32>(at), factor, height);
+    return GroundVertex(at, coarse, sample + vec3<f32>(0.0, height, 0.0), height, gradient);
+}
+
+// Places a vertex of a patch. Values of the result: column and row in the patch, how far shading has moved to the vertices' own normals,
+// and the height in world units (w). For the wireframe, xyz are barycentric coordinates: 1 at one corner of each triangle, 0 at the
+// others. Words: the patch's window and level.
+fn terrain_place(instance: u32, vertex: u32) -> SceneVertex {
+    let patch_of = patches[instance];
+    let placed = ground_vertex(instance, vertex, THIS_FRAME);
+    var values = vec4<f32>(vec2<f32>(placed.at), placed.coarse, placed.height);
     if WIREFRAME {
         // Within a patch, all triangles give a vertex the same corner number, 0 to 2.
-        values = vec4<f32>(0.0, 0.0, 0.0, height);
-        values[(corner.x + 2u * corner.y) % 3u] = 1.0;
+        values = vec4<f32>(0.0, 0.0, 0.0, placed.height);
+        values[(vertex % terrain.size + 2u * (vertex / terrain.size)) % 3u] = 1.0;
     }
     let steps = f32(1u << patch_of.level);
     return SceneVertex(
-        sample + vec3<f32>(0.0, height, 0.0), gradient_normal(gradient, steps * terrain.run),
+        placed.position, gradient_normal(placed.gradient, steps * terrain.run),
         vec4<f32>(1.0, 0.0, 0.0, 1.0),
-        vec4<f32>(patch_of.uv + steps * vec2<f32>(at) * terrain.tiling, hole_at(patch_of, at), 0.0), values,
+        vec4<f32>(patch_of.uv + steps * vec2<f32>(placed.at) * terrain.tiling, hole_at(patch_of, placed.at), 0.0), values,
         vec3<u32>(patch_of.window, patch_of.level, 0u), 1.0);
 }
 
-// Position of a vertex in the last frame: its current position, because the ground does not move.
+// Position of a vertex in the last frame: the vertex morphs as the cameras of that frame allowed. The samples do not move. The vertex
+// counts as drawn by the same node, so the jump from one node to another is no motion.
 fn terrain_last_position(instance: u32, vertex: u32) -> vec3<f32> {
-    return terrain_place(instance, vertex).position;
+    return ground_vertex(instance, vertex, LAST_FRAME).position;
 }
 
 // Unit normal of a node at `at`, in samples from its first vertex, interpolated between its normals.

@@ -7,9 +7,9 @@ use crate::gpu::{Buffer, Gpu, GpuError, Group, Staged, Uniform, Upload as _};
 use crate::lod::SelectView;
 use crate::scene::camera::Camera;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::object_kind::KindInView;
+use crate::scene::object_kind::{KindInView, ViewOfFrame};
 use crate::scene::placement::Placement;
-use crate::shared::render::scene_terrain::TerrainView;
+use crate::shared::render::scene_terrain::{TerrainFrame, TerrainView};
 
 /// The resources of a terrain for one view.
 #[derive(Debug)]
@@ -38,16 +38,16 @@ impl KindInView for TerrainInView {
         &self.group
     }
 
-    fn stage(&self, staged: &mut Staged, camera: &Camera, _: usize) -> Result<Vec<u32>, Error> {
-        staged.uniform(&self.uniform, &seen_from(camera, self.spacing, self.object))?;
+    fn stage(&self, staged: &mut Staged, view: ViewOfFrame<'_>) -> Result<Vec<u32>, Error> {
+        staged.uniform(&self.uniform, &seen_from(view.camera, self.spacing, self.object))?;
         Ok(Vec::new())
     }
 }
 
 /// A terrain in a view that is not set yet. `object` is the number of the terrain's object.
 pub(crate) fn nowhere(object: u32) -> TerrainView {
-    let cameras = SelectView::nothing().cameras;
-    TerrainView { base: IVec2::ZERO, rest: Vec3::ZERO, object, cameras, camera_count: 0, fraction: 0.0 }
+    let frame = TerrainFrame { cameras: SelectView::nothing().cameras, camera_count: 0, fraction: 0.0 };
+    TerrainView { base: IVec2::ZERO, rest: Vec3::ZERO, object, frames: [frame; 2] }
 }
 
 /// A terrain as a camera sees it, without levels of detail. Shaders count samples from the one nearest to the eye, so that `f32`

@@ -20,6 +20,7 @@ use crate::scene::handles::{SceneNumber, Slots};
 use crate::scene::layout::Layout;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object::Object;
+use crate::scene::object_kind::ViewOfFrame;
 use crate::scene::order::back_to_front;
 use crate::scene::quality::Quality;
 use crate::scene::statistics::view::ViewCounts;
@@ -385,7 +386,8 @@ impl View {
         if let Some(lists) = &self.lists {
             for (in_view, first) in lists.in_view.iter().zip(&lists.firsts) {
                 let Some(in_view) = in_view else { continue };
-                let shown = in_view.stage(staged, &camera, number)?;
+                let shown = in_view
+                    .stage(staged, ViewOfFrame { camera: &camera, number, is_next: last.is_some() })?;
                 staged.elements(&lists.shown, *first as usize / 32, &shown)?;
             }
         }

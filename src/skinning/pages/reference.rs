@@ -35,7 +35,7 @@ impl Pages {
             .map(|lod| if lod.max_influences == 0 { 0 } else { levels[last.min(lod.mesh_lod as usize)] })
             .collect();
         let rows = || self.table.chunks_exact(self.clusters);
-        debug_assert_eq!(rows().len(), lods.len());
+        assert_eq!(rows().len(), lods.len());
         for (instance, needs) in needed.iter().enumerate() {
             let row = &mut self.table[instance * self.clusters..][..self.clusters];
             for entry in row[..self.held[instance] as usize].iter_mut().skip(*needs as usize).rev() {

@@ -12,6 +12,7 @@ use crate::scene::ray::SurfaceHit;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::field::{eroded_region, region, region_of};
 use crate::terrain::ground::Ground;
+use crate::terrain::lattice::Given;
 use crate::terrain::limit::ErosionLimit;
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
@@ -146,18 +147,20 @@ impl FinestGround {
     /// The heights of a region; `None` while heights of the elevation map are on their way.
     fn heights(&self, samples: Region) -> Result<Option<Vec<i32>>, InputError> {
         let Recipe { config, features, .. } = &self.recipe;
-        if let Some(limit) = self.erosion {
-            return Ok(Some(eroded_region(&self.recipe, limit, samples)));
-        }
         if let Some((target, time)) = &self.target {
             let [from, to] =
                 [&self.recipe, target].map(|recipe| region(&recipe.config, &recipe.features, samples));
             return Ok(Some(morph(&from, &to, time.fixed_time())));
         }
-        let Some(map) = self.elevation.as_ref().filter(|map| map.reaches(samples)) else {
-            return Ok(Some(region(config, features, samples)));
+        let finest = |given: Option<&Given<'_>>| match self.erosion {
+            Some(limit) => eroded_region(&self.recipe, limit, given, samples),
+            None => region_of(config, features, given, samples),
         };
-        let heights = map.given(config, samples, |given| region_of(config, features, Some(given), samples));
+        let around = samples.grown(self.recipe.apron(0));
+        let Some(map) = self.elevation.as_ref().filter(|map| map.reaches(around)) else {
+            return Ok(Some(finest(None)));
+        };
+        let heights = map.given(config, around, |given| finest(Some(given)));
         heights.map_err(|error| match error {
             Error::Input(error) => error,
             other => InputError::new("elevation", "a tile", format!("must load: {other}")),

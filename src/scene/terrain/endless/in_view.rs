@@ -1,15 +1,16 @@
 //! Endless terrain in a view: the nodes that the view draws, and how their vertices move.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
 
 use crate::Error;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Staged, Uniform, Upload as _};
-use crate::lod::LodCamera;
-use crate::scene::camera::Camera;
 use crate::scene::layouts::SceneLayouts;
-use crate::scene::object_kind::KindInView;
+use crate::scene::object_kind::{KindInView, ViewOfFrame};
+use crate::scene::placement::Placement;
 use crate::scene::terrain::in_view::{nowhere, seen_from};
-use crate::shared::render::scene_terrain::{TerrainNode, TerrainView};
+use crate::shared::render::scene_terrain::{TerrainFrame, TerrainNode, TerrainView};
 
 /// The nodes of a view, by their places in the pool.
 #[derive(Debug)]
@@ -17,10 +18,8 @@ pub(super) struct ViewTable {
     pub nodes: Vec<TerrainNode>,
     /// One bit per place: whether the view draws the node.
     pub shown: Vec<u32>,
-    pub cameras: [LodCamera; 4],
-    pub camera_count: u32,
-    /// The part of the allowed displacement that levels of detail may use.
-    pub fraction: f32,
+    /// What the view allows.
+    pub allows: TerrainFrame,
 }
 
 /// The resources of an endless terrain for one view.
@@ -32,6 +31,8 @@ pub(super) struct EndlessInView {
     group: Group,
     /// The tables of all views of the frame.
     tables: Arc<Mutex<Vec<ViewTable>>>,
+    /// What the view allowed in its last frame, and the corner of its cell.
+    last: Mutex<Option<(TerrainFrame, DVec3)>>,
     /// World units between samples.
     spacing: f64,
     /// Number of the terrain's object.
@@ -47,7 +48,8 @@ impl EndlessInView {
     ) -> Result<Self, GpuError> {
         let uniform = Uniform::new(gpu, "terrain in a view", &nowhere(object))?;
         let nodes = Buffer::new(gpu, "nodes in a view", capacity)?;
-        Ok(Self { group: layouts.ground(gpu, &uniform, &nodes)?, uniform, nodes, tables, spacing, object })
+        let group = layouts.ground(gpu, &uniform, &nodes)?;
+        Ok(Self { group, uniform, nodes, tables, last: Mutex::new(None), spacing, object })
     }
 }
 
@@ -56,13 +58,27 @@ impl KindInView for EndlessInView {
         &self.group
     }
 
-    fn stage(&self, staged: &mut Staged, camera: &Camera, number: usize) -> Result<Vec<u32>, Error> {
-        let tables = self.tables.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    fn stage(&self, staged: &mut Staged, view: ViewOfFrame<'_>) -> Result<Vec<u32>, Error> {
+        let ViewOfFrame { camera, number, is_next } = view;
+        let tables = self.tables.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(table) = tables.get(number) else { return Ok(Vec::new()) };
-        let ViewTable { cameras, camera_count, fraction, .. } = *table;
+        let corner = Placement::corner(camera.cell);
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = last.filter(|_| is_next).map(|(frame, from)| seen_in(frame, from - corner));
+        let frames = [table.allows, before.unwrap_or(table.allows)];
         let view = seen_from(camera, self.spacing, self.object);
-        staged.uniform(&self.uniform, &TerrainView { cameras, camera_count, fraction, ..view })?;
+        staged.uniform(&self.uniform, &TerrainView { frames, ..view })?;
         staged.elements(&self.nodes, 0, &table.nodes)?;
+        *last = Some((table.allows, corner));
         Ok(table.shown.clone())
     }
+}
+
+/// What a view allowed in its last frame, in the cell of this frame. `moved` is the way from this cell's corner to that of the last
+/// frame's cell, in world units.
+fn seen_in(mut last: TerrainFrame, moved: DVec3) -> TerrainFrame {
+    for camera in &mut last.cameras {
+        camera.eye = (camera.eye.as_dvec3() + moved).as_vec3();
+    }
+    last
 }

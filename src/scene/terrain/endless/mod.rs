@@ -32,7 +32,7 @@ use crate::scene::object_kind::{
 use crate::scene::placement::Placement;
 use crate::scene::ray::SurfaceHit;
 use crate::shared::lod::object::{OBJECT_LEVELS, SceneDraw};
-use crate::shared::render::scene_terrain::{MORPH_START, STITCHED, TerrainNode, TerrainParams};
+use crate::shared::render::scene_terrain::{MORPH_START, STITCHED, TerrainFrame, TerrainNode, TerrainParams};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::cover::planes;
@@ -268,9 +268,8 @@ pub(in crate::scene) fn made(
     let erosion = (recipe.apron(0) > 0).then_some(ErosionLimit { depth: limits.erosion_depth });
     if let Some(erosion) = erosion {
         erosion.validate().map_err(|error| InputError { path: "erosion_depth".to_owned(), ..error })?;
-        let bound = || "must have no erosion beside a target or an elevation map";
-        let is_alone = target.is_none() && elevation.is_none();
-        InputError::check(is_alone, "recipe", "erosion", bound)?;
+        let bound = || "must have no erosion beside a target";
+        InputError::check(target.is_none(), "recipe", "erosion", bound)?;
     }
     let view_distance = limits.checked(&recipe.config)?;
     let mut instances = Instances::new(limits.capacity as usize);
@@ -533,9 +532,13 @@ impl Endless {
                 let [own, other] = [Some(found.own), found.other]
                     .map(|facts| FoundFacts { own: facts.unwrap_or(found.own), other: None });
                 if let Some(limit) = self.size.erosion {
+                    if !grid.is_eroded(self.size, node.level) {
+                        let plain = facts_of(config, grid, node.level, (&found, beyond), injected);
+                        return plain.beside_eroded(limit.depth);
+                    }
                     let own = facts_of(config, grid, node.level, (&own, beyond), injected);
                     let eroded = facts_of(config, grid, node.level, (&other, beyond), injected);
-                    return own.eroded(eroded, limit.depth, grid.is_eroded(self.size, node.level));
+                    return own.eroded(eroded, limit.depth);
                 }
                 let Some(((target, _), offsets)) = target else {
                     return facts_of(config, grid, node.level, (&found, beyond), injected);
@@ -688,14 +691,18 @@ impl Endless {
     fn given_to(&self, node: Node) -> Result<Elevated, Error> {
         let Some(map) = &self.elevation else { return Ok(Elevated::Not) };
         let region = self.grid.region_of(node);
-        if !map.reaches(region) {
+        let is_eroded = self.grid.is_eroded(self.size, node.level);
+        let around = is_eroded.then(|| region.grown(self.recipe.apron(0)));
+        if !map.reaches(around.unwrap_or(region)) {
             return Ok(Elevated::Not);
         }
-        let heights = map.heights(self.pool.given_region(self.config(), node))?;
+        let heights = |region| map.heights(self.pool.given_region(self.config(), region));
+        let (own, around) = (heights(region)?, around.map(heights).transpose()?);
         let beyond = map.beyond(self.config(), region.coarser, self.grid.cells_of(node))?;
-        Ok(match (heights, beyond) {
-            (Some(heights), Some(beyond)) => {
-                Elevated::By(NodeElevation { heights: Arc::new(heights), beyond })
+        Ok(match (own, around, beyond) {
+            (Some(heights), around @ (None | Some(Some(_))), Some(beyond)) => {
+                let around = around.flatten().map(Arc::new);
+                Elevated::By(NodeElevation { heights: Arc::new(heights), around, beyond })
             }
             _ => Elevated::NotYet,
         })
@@ -760,7 +767,8 @@ impl Endless {
             };
             shown[slot as usize / 32] |= 1 << (slot % 32);
         }
-        ViewTable { nodes, shown, cameras: view.cameras, camera_count: view.camera_count, fraction }
+        let allows = TerrainFrame { cameras: view.cameras, camera_count: view.camera_count, fraction };
+        ViewTable { nodes, shown, allows }
     }
 
     /// Chooses what the views of a frame draw, and what the frame makes. Returns the instances that are placed anew.
@@ -1038,12 +1046,17 @@ impl Facts {
     }
 
     /// The facts of a node whose heights lie between these and eroded ones, at most `depth` away. Of what a view allows, erosion that is
-    /// not shown takes at most half, so the node's own error may take the other half. Nodes that are not eroded are drawn where a
-    /// view allows twice the depth.
-    fn eroded(self, eroded: Self, depth: f64, is_eroded: bool) -> Self {
+    /// not shown takes at most half, so the node's own error may take the other half.
+    fn eroded(self, eroded: Self, depth: f64) -> Self {
         let [low, high] = self.heights;
-        let error = self.error.max(if is_eroded { eroded.error } else { depth as f32 });
-        Self { heights: [low - depth, high + depth], error: 2.0 * error }
+        Self { heights: [low - depth, high + depth], error: 2.0 * self.error.max(eroded.error) }
+    }
+
+    /// The facts of a node that is not eroded, in terrain whose finest nodes are, by at most `depth`. Such nodes are drawn where a
+    /// view allows twice the depth.
+    fn beside_eroded(self, depth: f64) -> Self {
+        let [low, high] = self.heights;
+        Self { heights: [low - depth, high + depth], error: 2.0 * self.error.max(depth as f32) }
     }
 }
 

@@ -163,6 +163,8 @@ struct BatchJob {
 struct ErosionJob {
     /// Generates the regions with the samples around them.
     around: RegionJob,
+    /// Replaces heights of these regions by those of a map of the terrain's own spacing.
+    given: Option<(Buffer<i32>, Job)>,
     /// Erosion, its limit, and the tiles.
     steps: Vec<Job>,
     /// Slots of the eroded tiles and of their facts.
@@ -174,10 +176,8 @@ struct ErosionJob {
 /// Replaces heights of regions by those of a map, on the regions' own lattice.
 #[derive(Debug)]
 struct GivenJob {
-    /// Finds the facts of the generated heights.
-    generated: Job,
-    /// Slots of these facts.
-    slots: Buffer<u32>,
+    /// Finds the facts of the generated heights, and their slots. `None` for eroded nodes: nothing lies below their heights.
+    generated: Option<(Job, Buffer<u32>)>,
     heights: Buffer<i32>,
     replace: Job,
 }
@@ -500,16 +500,18 @@ impl Pool {
             (map.filter(|map| map.coarser > coarser), map.filter(|map| map.coarser <= coarser));
         let heights = self.generator.prepare_given(gpu, config, regions, features, output, lattice)?;
         let given = |GivenHeights { pass, .. }: GivenHeights<'_>| -> Result<GivenJob, Error> {
-            let slots = Buffer::new(gpu, "slots of generated heights", BATCH)?;
-            let heights = Buffer::new(gpu, "given heights", BATCH * (width as usize).pow(2))?;
-            let buffers = ReplaceBuffers { given: &heights, heights: &self.heights };
-            let replace = pass.prepare(gpu, width, count, buffers)?;
-            Ok(GivenJob { generated: facts_of(&slots)?, slots, heights, replace })
+            let generated = || -> Result<_, Error> {
+                let slots = Buffer::new(gpu, "slots of generated heights", BATCH)?;
+                Ok((facts_of(&slots)?, slots))
+            };
+            let generated = (!self.grid.is_eroded(self.size, level)).then(generated).transpose()?;
+            let (heights, replace) = replaced(gpu, pass, width, &self.heights)?;
+            Ok(GivenJob { generated, heights, replace })
         };
         let given = own.map(given).transpose()?;
         let nodes = facts_of(&slots)?;
         let erosion = self.erosion.as_ref().filter(|_| coarser == 0);
-        let erosion = erosion.map(|erosion| self.erosion_job(gpu, config, (erosion, shape), features));
+        let erosion = erosion.map(|erosion| self.erosion_job(gpu, config, (erosion, shape), features, map));
         let erosion = erosion.transpose()?;
         let normals = |pass: &NodeNormalsPass| {
             let heights = erosion.as_ref().map_or(&self.heights, |job| &job.heights);
@@ -528,13 +530,16 @@ impl Pool {
         config: &TerrainConfig,
         (erosion, shape): (&Erosion, NodeShape),
         features: usize,
+        map: Option<GivenHeights<'_>>,
     ) -> Result<ErosionJob, Error> {
         let Erosion { recipe, limit, windows, flows, .. } = erosion;
         let (count, width) = (BATCH as u32, shape.region_width());
         let wide = width + 2 * recipe.apron(0);
         let regions = Regions { count, width: wide, coarser: 0 };
         let output = HeightBuffers { output: &windows[0], scratch: &self.scratch };
-        let around = self.generator.prepare_regions(gpu, config, regions, features, output)?;
+        let (lattice, own) = (map.filter(|map| map.coarser > 0), map.filter(|map| map.coarser == 0));
+        let around = self.generator.prepare_given(gpu, config, regions, features, output, lattice)?;
+        let given = own.map(|map| replaced(gpu, map.pass, wide, &windows[0])).transpose()?;
         let mut both =
             windows.each_ref().map(|heights| Fields { heights: heights.clone(), width: wide, count });
         both[1].width -= 2;
@@ -547,7 +552,7 @@ impl Pool {
         let buffers =
             NodeBuffers { heights: &heights, slots: &slots, tiles: &self.tiles, facts: &self.facts };
         steps.push(self.pass.prepare(gpu, shape, count, buffers)?);
-        Ok(ErosionJob { around, steps, slots, heights })
+        Ok(ErosionJob { around, given, steps, slots, heights })
     }
 
     /// Stages what the jobs of the frame read, and the patches of new nodes.
@@ -572,18 +577,25 @@ impl Pool {
             staged.elements(&job.slots, 0, &slots)?;
             let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
             job.heights.stage_regions(staged, &firsts, self.features_of(*heights, features))?;
-            if let Some(given) = &job.given {
-                staged.elements(&given.slots, 0, &generated)?;
+            if let Some((_, slots)) = job.given.as_ref().and_then(|given| given.generated.as_ref()) {
+                staged.elements(slots, 0, &generated)?;
             }
             if let (Some(job), Some(erosion)) = (&job.erosion, &self.erosion) {
                 staged.elements(&job.slots, 0, &generated)?;
                 job.around.stage_regions(staged, &erosion.firsts_around(&firsts), features)?;
             }
             for (number, new) in nodes.iter().enumerate() {
-                let Some(NodeElevation { heights, .. }) = &new.elevation else { continue };
+                let Some(NodeElevation { heights, around, .. }) = &new.elevation else { continue };
                 match &job.given {
                     Some(given) => staged.elements(&given.heights, number * heights.len(), heights)?,
                     None => job.heights.stage_given(staged, number, heights)?,
+                }
+                match (&job.erosion, around) {
+                    (Some(ErosionJob { given: Some((given, _)), .. }), Some(around)) => {
+                        staged.elements(given, number * around.len(), around)?;
+                    }
+                    (Some(job), Some(around)) => job.around.stage_given(staged, number, around)?,
+                    _ => {}
                 }
             }
             let none = [0; NODE_FACTS as usize];
@@ -605,9 +617,8 @@ impl Pool {
         Ok(())
     }
 
-    /// The region whose heights a map gives to a node.
-    pub fn given_region(&self, config: &TerrainConfig, node: Node) -> Region {
-        let own = self.grid.region_of(node);
+    /// The region whose heights a map gives to a region of a node.
+    pub fn given_region(&self, config: &TerrainConfig, own: Region) -> Region {
         match self.size.map.filter(|map| *map > own.coarser) {
             Some(map) => lattice_region(config, own, map),
             None => own,
@@ -643,12 +654,13 @@ impl Pool {
             let job = &self.jobs[heights as usize][level][job];
             job.heights.record(encoder);
             if let Some(given) = &job.given {
-                given.generated.record(encoder);
+                given.generated.iter().for_each(|(generated, _)| generated.record(encoder));
                 given.replace.record(encoder);
             }
             job.nodes.record(encoder);
             if let Some(erosion) = &job.erosion {
                 erosion.around.record(encoder);
+                erosion.given.iter().for_each(|(_, replace)| replace.record(encoder));
                 erosion.steps.iter().for_each(|step| step.record(encoder));
             }
             job.normals.iter().for_each(|normals| normals.record(encoder));
@@ -670,6 +682,18 @@ impl Pool {
             });
         }
     }
+}
+
+/// A buffer for the heights that a map gives to a batch of regions of `width` samples, and the job that puts them in place.
+fn replaced(
+    gpu: &Gpu,
+    pass: &ReplacePass,
+    width: u32,
+    heights: &Buffer<i32>,
+) -> Result<(Buffer<i32>, Job), Error> {
+    let given = Buffer::new(gpu, "given heights", BATCH * (width as usize).pow(2))?;
+    let replace = pass.prepare(gpu, width, BATCH as u32, ReplaceBuffers { given: &given, heights })?;
+    Ok((given, replace))
 }
 
 /// A node in the format of the shader that draws it.
