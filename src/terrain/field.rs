@@ -117,9 +117,13 @@ pub(crate) fn region_of(
 }
 
 /// Heights of a region of `seamless` terrain at its samples' own resolution, after the recipe's erosion, which moves heights by at most
-/// `limit`. `given` are heights before erosion, as for [`region_of`]. The region must be valid with [`Recipe::apron`] samples around it.
-/// The recipe must have no despiking.
-pub(crate) fn eroded_region(
+/// `limit`. The region must be valid with [`Recipe::apron`] samples around it. The recipe must have no despiking.
+pub fn eroded_region(recipe: &Recipe, limit: ErosionLimit, own: Region) -> Vec<i32> {
+    eroded_region_of(recipe, limit, None, own)
+}
+
+/// The same as [`eroded_region`], with given heights before erosion, as for [`region_of`].
+pub(crate) fn eroded_region_of(
     recipe: &Recipe,
     limit: ErosionLimit,
     given: Option<&Given<'_>>,

@@ -34,22 +34,25 @@ fn recipe() -> TerrainRecipe {
 }
 
 fn source(recipe: TerrainRecipe) -> TerrainSource {
-    seen_up_to(2_500.0, recipe)
+    TerrainSource::from(recipe).with_limits(limits())
 }
 
-/// The same with a short view, which is made quickly.
-fn near(recipe: TerrainRecipe) -> TerrainSource {
-    seen_up_to(800.0, recipe)
-}
-
-fn seen_up_to(distance: f64, recipe: TerrainRecipe) -> TerrainSource {
-    let limits = EndlessLimits {
+fn limits() -> EndlessLimits {
+    EndlessLimits {
         nodes_per_frame: 64,
-        view_distance: Some(distance),
+        view_distance: Some(2_500.0),
         erosion_depth: DEPTH,
         ..EndlessLimits::default()
-    };
-    TerrainSource::from(recipe).with_limits(limits)
+    }
+}
+
+/// The same with a short view and small nodes, of which a quarter of the ground is eroded.
+fn near(recipe: TerrainRecipe) -> TerrainSource {
+    TerrainSource::from(recipe).with_limits(EndlessLimits {
+        view_distance: Some(800.0),
+        node_size: 33,
+        ..limits()
+    })
 }
 
 /// The finest heights, eroded patch by patch, and the patches that are known.

@@ -10,7 +10,7 @@ use super::hole::TerrainHole;
 use crate::scene::object_kind::UnitRay;
 use crate::scene::ray::SurfaceHit;
 use crate::terrain::config::TerrainConfig;
-use crate::terrain::field::{eroded_region, region, region_of};
+use crate::terrain::field::{eroded_region_of, region, region_of};
 use crate::terrain::ground::Ground;
 use crate::terrain::lattice::Given;
 use crate::terrain::limit::ErosionLimit;
@@ -153,7 +153,7 @@ impl FinestGround {
             return Ok(Some(morph(&from, &to, time.fixed_time())));
         }
         let finest = |given: Option<&Given<'_>>| match self.erosion {
-            Some(limit) => eroded_region(&self.recipe, limit, given, samples),
+            Some(limit) => eroded_region_of(&self.recipe, limit, given, samples),
             None => region_of(config, features, given, samples),
         };
         let around = samples.grown(self.recipe.apron(0));
