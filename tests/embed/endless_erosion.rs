@@ -312,7 +312,8 @@ fn an_elevation_map_is_eroded() {
 
 #[test]
 fn nodes_are_made_again_after_a_loss() {
-    crate::endless::a_loss_leaves_no_trace(&near(recipe()));
+    let limits = EndlessLimits { view_distance: Some(800.0), ..limits() };
+    crate::endless::a_loss_leaves_no_trace(&TerrainSource::from(recipe()).with_limits(limits));
 }
 
 /// Heights that are injected at run time are eroded as those that were there from the beginning.
