@@ -218,7 +218,7 @@ pub(super) struct ViewOfFrame<'a> {
     pub camera: &'a Camera,
     /// Number of the view in the frame.
     pub number: usize,
-    /// Whether the view was in the last frame too, and its picture goes on.
+    /// Whether the view was in the last frame too, without a cut since.
     pub is_next: bool,
 }
 

@@ -46,7 +46,7 @@ fn limits() -> EndlessLimits {
     }
 }
 
-/// The same with a short view and small nodes, of which a quarter of the ground is eroded.
+/// The same with a short view and small nodes, which erode a quarter of the area.
 fn near(recipe: TerrainRecipe) -> TerrainSource {
     TerrainSource::from(recipe).with_limits(EndlessLimits {
         view_distance: Some(800.0),

@@ -19,7 +19,7 @@ const LINE_COLOR: vec3<f32> = vec3<f32>(0.35, 0.75, 0.5);
 // Linear colour of the ground between the edges of the wireframe.
 const DARK_COLOR: vec3<f32> = vec3<f32>(0.01, 0.014, 0.02);
 
-// What a view allows to the vertices of endless terrain in a frame.
+// The cameras of a view in a frame, which decide how far vertices of endless terrain may be displaced.
 struct TerrainFrame {
     // Cameras that decide levels of detail; the first `camera_count` are valid. Positions are relative to the corner of the view's
     // cell in this frame.
@@ -39,7 +39,7 @@ struct TerrainView {
     rest: vec3<f32>,
     // Number of the object, counted from 1.
     object: u32,
-    // What the view allows in this frame (`THIS_FRAME`) and in its last one (`LAST_FRAME`).
+    // Cameras of this frame (`THIS_FRAME`) and of the view's last one (`LAST_FRAME`).
     frames: array<TerrainFrame, 2>,
 }
 

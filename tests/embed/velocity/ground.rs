@@ -32,7 +32,7 @@ fn from_above(spacing: f32) -> Camera {
     }
 }
 
-/// What a frame draws.
+/// The pictures of one frame.
 struct Frame {
     velocities: Vec<[f32; 2]>,
     /// Positions in the oblique view; `None` where it shows no ground.

@@ -18,7 +18,7 @@ pub(super) struct ViewTable {
     pub nodes: Vec<TerrainNode>,
     /// One bit per place: whether the view draws the node.
     pub shown: Vec<u32>,
-    /// What the view allows.
+    /// The cameras that permit displacements of vertices, and the part that levels of detail may use.
     pub allows: TerrainFrame,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct EndlessInView {
     group: Group,
     /// The tables of all views of the frame.
     tables: Arc<Mutex<Vec<ViewTable>>>,
-    /// What the view allowed in its last frame, and the corner of its cell.
+    /// `ViewTable::allows` of the view's last frame, and the corner of its cell then.
     last: Mutex<Option<(TerrainFrame, DVec3)>>,
     /// World units between samples.
     spacing: f64,
@@ -74,8 +74,8 @@ impl KindInView for EndlessInView {
     }
 }
 
-/// What a view allowed in its last frame, in the cell of this frame. `moved` is the way from this cell's corner to that of the last
-/// frame's cell, in world units.
+/// Moves the cameras of a view's last frame into the cell of this frame. `moved` is the way from this cell's corner to that of the
+/// last frame's cell, in world units.
 fn seen_in(mut last: TerrainFrame, moved: DVec3) -> TerrainFrame {
     for camera in &mut last.cameras {
         camera.eye = (camera.eye.as_dvec3() + moved).as_vec3();
