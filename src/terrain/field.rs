@@ -8,6 +8,7 @@ use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, Terra
 use crate::terrain::features::Features;
 use crate::terrain::lattice::Given;
 use crate::terrain::limit::ErosionLimit;
+use crate::terrain::limit::reference::ErodedAt;
 use crate::terrain::pad::surrounds;
 use crate::terrain::recipe::{ErosionStage, Recipe};
 use crate::terrain::window::{Region, Span, Window};
@@ -135,9 +136,9 @@ pub(crate) fn eroded_region_of(
     let inside = |row: &[i32]| row[apron as usize..(apron + own.width) as usize].to_vec();
     let rows = window.chunks_exact(around.width as usize).skip(apron as usize).take(own.width as usize);
     let origins: Vec<i32> = rows.flat_map(inside).collect();
-    let mut eroded = finish(recipe, around.width as usize, &[], window);
-    limit::reference::limit(&origins, &mut eroded, limit.fixed_depth());
-    eroded
+    let eroded = finish(recipe, around.width as usize, &[], window);
+    let eroded = ErodedAt { heights: &eroded, width: own.width as usize, corner: 0 };
+    limit::reference::limit(&origins, eroded, limit.fixed_depth())
 }
 
 /// Despikes and erodes a window. `injected` lists (column, row) of the window's injected points, sorted by row.

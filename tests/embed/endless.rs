@@ -369,8 +369,8 @@ pub fn a_loss_leaves_no_trace(source: &TerrainSource) {
     world.settle();
     let before = picture(&mut world);
     assert_eq!(pixels(&mut world), 1.0);
-    let made = |world: &World| world.scene.terrain_statistics(world.land).expect("endless").nodes;
-    let nodes = made(&world);
+    let drawn = |world: &World| world.scene.terrain_statistics(world.land).expect("endless").drawn;
+    let nodes = drawn(&world);
     // A frame somewhere else is recorded and never submitted.
     let elsewhere = world.above([9_000.0, 9_000.0], 12.0);
     world.view.set(elsewhere).expect("valid");
@@ -385,7 +385,7 @@ pub fn a_loss_leaves_no_trace(source: &TerrainSource) {
     world.scene.rebuild_all(&second, &mut [&mut world.view]).expect("rebuilt");
     world.gpu = second;
     world.settle();
-    assert_eq!(made(&world), nodes);
+    assert_eq!(drawn(&world), nodes);
     assert!(picture(&mut world) == before, "after a lost device");
 }
 

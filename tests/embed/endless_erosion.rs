@@ -55,6 +55,17 @@ fn near(recipe: TerrainRecipe) -> TerrainSource {
     })
 }
 
+/// Nodes that are cut from shared squares of eroded ground: they are less than four times as wide as erosion reaches.
+fn small(recipe: TerrainRecipe) -> TerrainSource {
+    TerrainSource::from(recipe).with_limits(EndlessLimits {
+        view_distance: Some(400.0),
+        node_size: 9,
+        nodes_per_frame: 256,
+        capacity: 4096,
+        ..limits()
+    })
+}
+
 /// The finest heights, eroded patch by patch, and the patches that are known.
 struct Truth {
     recipes: [TerrainRecipe; 2],
@@ -249,14 +260,17 @@ fn a_place_has_one_picture() {
 /// host has the heights of the terrain without erosion, eroded by the reference, and the device draws them.
 #[test]
 fn an_elevation_map_is_eroded() {
-    for (spacing, margin) in [(1, 0), (8, 6)] {
+    type Source = fn(TerrainRecipe) -> TerrainSource;
+    // Small nodes share eroded ground.
+    let cases: [(u32, u32, Source); 3] = [(1, 0, near), (1, 0, small), (8, 6, small)];
+    for (spacing, margin, source) in cases {
         let config = crate::elevation::config();
         let map = crate::elevation::map([-60, -70], [90, 100], spacing, margin);
         let tiles = Arc::new(ElevationTiles::new(&config, &map).expect("valid"));
         let thermal = Thermal { iterations: 3, talus: 20.0 };
         let [mut eroded, plain] = [Some(thermal), None].map(|thermal| {
             let recipe = TerrainRecipe { thermal, ..TerrainRecipe::new(config.clone()) };
-            World::of(&near(recipe).with_elevation(tiles.clone()), [160, 90])
+            World::of(&source(recipe).with_elevation(tiles.clone()), [160, 90])
         });
         let ground = |world: &World, at: [f64; 2]| {
             world.scene.ground(world.land, at[0], at[1]).expect("valid").expect("ground").height
@@ -310,10 +324,40 @@ fn an_elevation_map_is_eroded() {
     }
 }
 
+/// Small nodes share eroded ground. What is drawn is within a pixel of the ground that is eroded patch by patch. Back from a place
+/// where more ground is shared than the device keeps, the picture is the same.
+#[test]
+fn small_nodes_share_eroded_ground() {
+    let truth = Truth::new();
+    let mut world = World::of(&small(recipe()), [96, 54]);
+    let mut plain = World::of(&small(TerrainRecipe::new(config())), [96, 54]);
+    let camera = world.above([10.0, 20.0], 3.0);
+    let apart = [&mut world, &mut plain].map(|world| {
+        world.view.set(camera).expect("valid");
+        world.settle();
+        let drawn = world.positions(&camera);
+        assert_eq!(holes(world, &camera, &drawn), 0);
+        largest(&offsets(&|x, z| truth.at(x, z), &camera, &some(&drawn, 3)))
+    });
+    println!("{apart:?} px off, with erosion and without");
+    assert!(apart[0] <= 1.0 + ROUNDING && apart[1] > 1.5, "{apart:?}");
+    let before = picture(&mut world);
+    let elsewhere = world.above([3_010.0, 4_020.0], 3.0);
+    world.view.set(elsewhere).expect("valid");
+    world.settle();
+    let nodes = world.scene.terrain_statistics(world.land).expect("endless");
+    println!("{nodes:?}");
+    // Sixteen nodes of level 0 share a square, of which there are 64.
+    assert!(nodes.levels[2] > 64, "{nodes:?}");
+    assert!(picture(&mut world) != before);
+    world.view.set(camera).expect("valid");
+    world.settle();
+    assert!(picture(&mut world) == before);
+}
+
 #[test]
 fn nodes_are_made_again_after_a_loss() {
-    let limits = EndlessLimits { view_distance: Some(800.0), ..limits() };
-    crate::endless::a_loss_leaves_no_trace(&TerrainSource::from(recipe()).with_limits(limits));
+    crate::endless::a_loss_leaves_no_trace(&near(recipe()));
 }
 
 /// Heights that are injected at run time are eroded as those that were there from the beginning.
@@ -330,11 +374,11 @@ fn edited_ground_is_eroded() {
         world.settle();
         picture(world)
     };
-    let mut world = World::of(&near(with(30)), [96, 54]);
+    let mut world = World::of(&small(with(30)), [96, 54]);
     let before = shown(&mut world);
     world.scene.set_terrain_features(world.land, &wall(34)).expect("edited");
     let after = shown(&mut world);
-    assert!(after == shown(&mut World::of(&near(with(34)), [96, 54])) && after != before);
+    assert!(after == shown(&mut World::of(&small(with(34)), [96, 54])) && after != before);
 }
 
 /// Over tall ground, at the focal length of a large picture, coarse nodes stand beside the view and behind the eye.

@@ -8,7 +8,7 @@ mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use pass::{LimitBuffers, LimitPass};
+pub use pass::{LimitBuffers, LimitPass, LimitShape};
 
 /// How far erosion may move heights. What it would move farther stays at this distance.
 #[derive(Debug, Clone, Copy, PartialEq)]

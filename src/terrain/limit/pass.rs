@@ -3,22 +3,37 @@
 use super::ErosionLimit;
 use crate::Error;
 use crate::gpu::bindings::terrain::limit as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::limit::LimitParams;
 
-/// Keeps eroded heights within a distance of the heights before erosion.
+/// Cuts regions from eroded heights, and keeps them within a distance of the heights before erosion.
 #[derive(Debug, Clone)]
 pub struct LimitPass {
     kernel: Kernel,
 }
 
-/// Buffers of heights in 1/65536 units.
+/// Buffers of a batch of regions. Heights are in 1/65536 units, and below 2^30 in size.
 #[derive(Debug, Clone, Copy)]
 pub struct LimitBuffers<'a> {
-    /// Read: the heights before erosion.
+    /// Read: the regions' heights before erosion, region by region, row by row.
     pub origins: &'a Buffer<i32>,
-    /// Read and written: the eroded heights.
+    /// Read: eroded heights.
+    pub eroded: &'a Buffer<i32>,
+    /// Read: for each region, the index of its first height in `eroded`.
+    pub corners: &'a Buffer<u32>,
+    /// Written: the regions' heights.
     pub heights: &'a Buffer<i32>,
+}
+
+/// The size of a batch of regions, and of what they are cut from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LimitShape {
+    /// Number of regions.
+    pub count: u32,
+    /// Number of heights along an edge of a region.
+    pub width: u32,
+    /// Number of heights in a row of the eroded ones.
+    pub eroded_width: u32,
 }
 
 impl LimitPass {
@@ -30,7 +45,7 @@ impl LimitPass {
         Ok(Self { kernel: bindings::kernel(gpu)? })
     }
 
-    /// Prepares a job for the first `points` heights of both buffers. Heights must be below 2^30 in size.
+    /// Prepares a job for a batch of regions.
     ///
     /// # Errors
     /// [`crate::InputError`] for a limit out of bounds and for buffers that are too short; [`GpuError`].
@@ -38,19 +53,26 @@ impl LimitPass {
         &self,
         gpu: &Gpu,
         limit: ErosionLimit,
-        points: usize,
+        shape: LimitShape,
         buffers: LimitBuffers<'_>,
     ) -> Result<Job, Error> {
         limit.validate()?;
-        buffers.origins.check_holds("origins", points)?;
-        buffers.heights.check_holds("heights", points)?;
-        let params = LimitParams { points: points as u32, most: limit.fixed_depth() };
+        let LimitShape { count, width, eroded_width } = shape;
+        let LimitBuffers { origins, eroded, corners, heights } = buffers;
+        let points = count as usize * (width as usize).pow(2);
+        origins.check_holds("origins", points)?;
+        corners.check_holds("corners", count as usize)?;
+        heights.check_holds("heights", points)?;
+        let params = LimitParams { width, eroded_width, most: limit.fixed_depth() };
         let group = bindings::Group {
             params: &Uniform::new(gpu, "limit of erosion", &params)?,
-            origins: buffers.origins.slice(),
-            heights: buffers.heights.slice(),
+            origins: origins.slice(),
+            eroded: eroded.slice(),
+            corners: corners.slice(),
+            heights: heights.slice(),
         };
-        let group = group.bind(gpu, &self.kernel)?;
-        Ok(Job::spread(gpu, "terrain/limit", &self.kernel, group, points as u32)?)
+        let groups = vec![group.bind(gpu, &self.kernel)?];
+        let step = Step::covering(&self.kernel, groups, [width, width, count]);
+        Ok(Job::new(gpu, "terrain/limit", vec![step])?)
     }
 }

@@ -27,7 +27,7 @@ pub(super) struct Elevation {
 pub(super) struct NodeElevation {
     /// The heights of a region, row by row; [`NOT_GIVEN`] where the map has none.
     pub heights: Arc<Vec<i32>>,
-    /// The same of the region with the samples around it that erosion needs; `None` for a node that is not eroded.
+    /// The same of the region that is generated and eroded for the node; `None` for a node that is not eroded.
     pub around: Option<Arc<Vec<i32>>>,
     pub beyond: Beyond,
 }

@@ -4,6 +4,7 @@
 //! made, and refined as soon as its facts have arrived from the device: its extremes, and how far it lies from the finest heights.
 
 mod elevation;
+mod eroded;
 mod ground;
 mod hole;
 mod in_view;
@@ -98,6 +99,7 @@ pub struct EndlessLimits {
     /// Largest distance in world units by which erosion may move a height, at most 1000; it has no effect without erosion.
     /// At least 0.001. Default: 4. Ground is eroded where a view allows less than twice as much; the number of nodes there grows with the
     /// square. An eroded node takes as many passes over its finest heights as there are iterations, and twice the memory for heights.
+    /// Nodes less than four times as wide as there are iterations share 64 larger squares of eroded ground, 76 MB at most.
     pub erosion_depth: f64,
 }
 
@@ -193,6 +195,8 @@ pub(in crate::scene) struct Endless {
     tables: Arc<Mutex<Vec<ViewTable>>>,
     ground: FinestGround,
     elevation: Option<Elevation>,
+    /// What the map gives to regions that are eroded in this frame: nodes share them.
+    given_around: Vec<(Region, Option<Arc<Vec<i32>>>)>,
     /// The holes; `None` for terrain that was added without.
     holes: Option<Vec<TerrainHole>>,
     /// Whether holes have changed since they were staged.
@@ -308,6 +312,7 @@ pub(in crate::scene) fn made(
         tables: Arc::default(),
         ground: FinestGround::new(recipe, (source.target.clone(), erosion), elevation.clone())?,
         elevation,
+        given_around: Vec::new(),
         holes,
         are_holes_changed: false,
         statistics: EndlessStatistics { capacity, ..EndlessStatistics::default() },
@@ -565,12 +570,13 @@ impl Endless {
         (self.recipe, self.offsets) = (recipe, offsets);
         let also = (self.source.target.clone(), self.size.erosion);
         self.ground = FinestGround::new(&self.recipe, also, self.elevation.clone())?;
+        let is_region_changed = |region| changed.iter().any(|point: &ChangedPoint| point.changes(region));
+        self.pool.forget_eroded(is_region_changed);
         let apron = self.recipe.apron(0);
         let is_changed = |node: &Node| {
             let own = self.grid.region_of(*node);
             // Erosion carries a change as far as its iterations reach.
-            let region = if self.grid.is_eroded(self.size, node.level) { own.grown(apron) } else { own };
-            changed.iter().any(|point| point.changes(region))
+            is_region_changed(if self.grid.is_eroded(self.size, node.level) { own.grown(apron) } else { own })
         };
         let stale: Vec<Node> = self.residents.keys().filter(|node| is_changed(node)).copied().collect();
         let is_used = |node: &Node| self.residents.get(node).is_some_and(|own| own.used == self.frame);
@@ -688,20 +694,28 @@ impl Endless {
     }
 
     /// What the elevation map gives to a node.
-    fn given_to(&self, node: Node) -> Result<Elevated, Error> {
+    fn given_to(&mut self, node: Node) -> Result<Elevated, Error> {
         let Some(map) = &self.elevation else { return Ok(Elevated::Not) };
         let region = self.grid.region_of(node);
-        let is_eroded = self.grid.is_eroded(self.size, node.level);
-        let around = is_eroded.then(|| region.grown(self.recipe.apron(0)));
+        let around = self.pool.around(node);
         if !map.reaches(around.unwrap_or(region)) {
             return Ok(Elevated::Not);
         }
-        let heights = |region| map.heights(self.pool.given_region(self.config(), region));
-        let (own, around) = (heights(region)?, around.map(heights).transpose()?);
-        let beyond = map.beyond(self.config(), region.coarser, self.grid.cells_of(node))?;
+        let heights = |region| map.heights(self.pool.given_region(&self.recipe.config, region));
+        let own = heights(region)?;
+        let beyond = map.beyond(&self.recipe.config, region.coarser, self.grid.cells_of(node))?;
+        if let Some(around) = around
+            && !self.given_around.iter().any(|(region, _)| *region == around)
+        {
+            self.given_around.push((around, heights(around)?.map(Arc::new)));
+        }
+        let around = around.map(|around| {
+            let mut known = self.given_around.iter().filter(|(region, _)| *region == around);
+            known.find_map(|(_, heights)| heights.clone())
+        });
         Ok(match (own, around, beyond) {
             (Some(heights), around @ (None | Some(Some(_))), Some(beyond)) => {
-                let around = around.flatten().map(Arc::new);
+                let around = around.flatten();
                 Elevated::By(NodeElevation { heights: Arc::new(heights), around, beyond })
             }
             _ => Elevated::NotYet,
@@ -781,6 +795,7 @@ impl Endless {
         self.view_biases.resize(views.len(), 1.0);
         self.frame += 1;
         self.new.clear();
+        self.given_around.clear();
         let mut moved = self.arrive();
         if std::mem::take(&mut self.are_bounds_changed) {
             moved = self.residents.keys().copied().collect();
@@ -926,6 +941,7 @@ impl Endless {
                 }
             }
         }
+        self.pool.forget_eroded(|_| true);
         self.are_bounds_changed = true;
     }
 

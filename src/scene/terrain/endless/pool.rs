@@ -3,20 +3,18 @@
 use std::ops::RangeInclusive;
 
 use super::elevation::NodeElevation;
+use super::eroded::{Cut, Erosion, ErosionJob, Source};
 use super::hole::TerrainHole;
 use crate::gpu::{Buffer, Gpu, Job, ReadbackRing, Staged, Upload as _};
 use crate::scene::FRAMES_IN_FLIGHT;
 use crate::shared::render::scene_terrain::TerrainPatch;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::cover::TILES_PERIOD;
-use crate::terrain::erosion::{Eroding, ErosionPass};
 use crate::terrain::features::Features;
-use crate::terrain::fields::Fields;
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::height::{HeightBuffers, HeightScratch};
-use crate::terrain::hydraulic::reference::Flow;
 use crate::terrain::levels::{GivenHeights, lattice_region};
-use crate::terrain::limit::{ErosionLimit, LimitBuffers, LimitPass};
+use crate::terrain::limit::ErosionLimit;
 use crate::terrain::morph::{HeightMorphPass, Morph, MorphBuffers, MorphJob};
 use crate::terrain::node::{NODE_FACTS, NODE_MARGIN, NodeBuffers, NodeFacts, NodePass, NodeShape};
 use crate::terrain::node_normals::{NodeNormalsBuffers, NodeNormalsPass};
@@ -98,19 +96,6 @@ struct Blend {
     is_due: bool,
 }
 
-/// Erodes nodes: those of the levels that are made from heights of the terrain's own resolution.
-#[derive(Debug)]
-struct Erosion {
-    recipe: Recipe,
-    limit: ErosionLimit,
-    pass: ErosionPass,
-    limiting: LimitPass,
-    /// Regions with the samples around them that erosion needs. Its iterations alternate between both.
-    windows: [Buffer<i32>; 2],
-    /// Water and sediment, if there is hydraulic erosion.
-    flows: Option<[Buffer<Flow>; 2]>,
-}
-
 /// What the heights of a batch are made from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Heights {
@@ -129,6 +114,8 @@ struct Batch {
     /// Number of the job among those of the level.
     job: usize,
     nodes: Vec<NewNode>,
+    /// Where eroded heights come from.
+    cut: Cut,
 }
 
 /// What a pool has memory for.
@@ -154,23 +141,17 @@ struct BatchJob {
     given: Option<GivenJob>,
     slots: Buffer<u32>,
     nodes: Job,
-    erosion: Option<ErosionJob>,
+    erosion: Option<ErodedNodes>,
     normals: Option<Job>,
 }
 
-/// Makes the eroded tiles of nodes, whose heights before erosion are there.
+/// Makes the eroded tiles of nodes.
 #[derive(Debug)]
-struct ErosionJob {
-    /// Generates the regions with the samples around them.
-    around: RegionJob,
-    /// Replaces heights of these regions by those of a map of the terrain's own spacing.
-    given: Option<(Buffer<i32>, Job)>,
-    /// Erosion, its limit, and the tiles.
-    steps: Vec<Job>,
-    /// Slots of the eroded tiles and of their facts.
+struct ErodedNodes {
+    erosion: ErosionJob,
+    /// Slots of the tiles and of their facts.
     slots: Buffer<u32>,
-    /// The eroded heights.
-    heights: Buffer<i32>,
+    nodes: Job,
 }
 
 /// Replaces heights of regions by those of a map, on the regions' own lattice.
@@ -276,14 +257,6 @@ impl Grid {
     }
 }
 
-impl Erosion {
-    /// The first samples of regions with the samples around them that erosion needs.
-    fn firsts_around(&self, firsts: &[[i64; 2]]) -> Vec<[i64; 2]> {
-        let apron = i64::from(self.recipe.apron(0));
-        firsts.iter().map(|first| first.map(|at| at - apron)).collect()
-    }
-}
-
 impl PoolSize {
     /// Whether there are facts about the heights without a map, or about eroded heights.
     fn has_others(&self) -> bool {
@@ -327,23 +300,7 @@ impl Pool {
         };
         let blend = target.map(blend).transpose()?;
         let read = if blend.is_some() { 2 * words } else { words };
-        let erosion = |limit: ErosionLimit| -> Result<Erosion, Error> {
-            let points = BATCH * (regions.width as usize).pow(2);
-            let heights = [
-                Buffer::new(gpu, "regions to erode", points)?,
-                Buffer::new(gpu, "regions to erode, in turn", points)?,
-            ];
-            let pass = ErosionPass::new(gpu, recipe)?;
-            let widest = Fields { heights: heights[0].clone(), width: regions.width, count: regions.count };
-            Ok(Erosion {
-                flows: pass.flows(gpu, &widest)?,
-                recipe: recipe.clone(),
-                limit,
-                pass,
-                limiting: LimitPass::new(gpu)?,
-                windows: heights,
-            })
-        };
+        let erosion = |limit| Erosion::new(gpu, (recipe, limit), grid, regions);
         let erosion = size.erosion.map(erosion).transpose()?;
         Ok(Self {
             tiles: drawn,
@@ -395,6 +352,7 @@ impl Pool {
     /// [`crate::gpu::GpuError`].
     pub fn invalidate(&mut self, gpu: &Gpu) -> Result<(), Error> {
         self.batches.clear();
+        self.forget_eroded(|_| true);
         Ok(self.ring.invalidate(gpu)?)
     }
 
@@ -412,7 +370,9 @@ impl Pool {
             self.generator = RegionPass::new(gpu, config, features.injection())?;
             self.injection = features.injection();
             self.jobs.iter_mut().flatten().for_each(Vec::clear);
+            self.erosion.iter_mut().for_each(Erosion::forget_jobs);
         }
+        self.erosion.iter_mut().for_each(Erosion::begin);
         let kinds = [Heights::Generated, Heights::Given, Heights::Target];
         for (level, kind) in
             (0..=self.grid.top as usize).flat_map(|level| kinds.map(|heights| (level, heights)))
@@ -435,19 +395,47 @@ impl Pool {
                 let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
                 let BatchJob { heights, features: room, .. } = &self.jobs[kind as usize][level][job];
                 let features = self.features_of(kind, features);
-                let around = self.jobs[kind as usize][level][job].erosion.as_ref().zip(self.erosion.as_ref());
-                let around = around.map_or(0, |(job, erosion)| {
-                    job.around.feature_count(&erosion.firsts_around(&firsts), features)
+                let eroded = self.jobs[kind as usize][level][job].erosion.as_ref().zip(self.erosion.as_ref());
+                let around = eroded.map_or(0, |(eroded, erosion)| {
+                    eroded.erosion.feature_count(erosion, (self.grid, nodes), features)
                 });
                 let needed = heights.feature_count(&firsts, features).max(around);
                 if needed > *room {
                     self.jobs[kind as usize][level][job] =
                         self.job(gpu, config, of, needed.next_power_of_two())?;
                 }
-                self.batches.push(Batch { heights: kind, level, job, nodes: nodes.to_vec() });
+                let cut = self.cut(gpu, recipe, kind, nodes)?;
+                self.batches.push(Batch { heights: kind, level, job, nodes: nodes.to_vec(), cut });
             }
         }
         Ok(())
+    }
+
+    /// Where the eroded heights of a batch come from.
+    fn cut(
+        &mut self,
+        gpu: &Gpu,
+        Recipe { config, features, .. }: &Recipe,
+        kind: Heights,
+        nodes: &[NewNode],
+    ) -> Result<Cut, Error> {
+        let map = given_by(self.size, self.replace.as_ref(), kind);
+        let source = Source { generator: &self.generator, scratch: &self.scratch, config, features: 0, map };
+        match &mut self.erosion {
+            Some(erosion) => erosion.cut(gpu, (self.grid, nodes), source, features),
+            None => Ok(Cut::default()),
+        }
+    }
+
+    /// The region that is generated and eroded for a node; `None` for a node that is not eroded.
+    pub fn around(&self, node: Node) -> Option<Region> {
+        let erosion = self.erosion.as_ref().filter(|_| self.grid.is_eroded(self.size, node.level))?;
+        Some(erosion.around(self.grid, node))
+    }
+
+    /// Forgets the eroded ground whose region is changed.
+    pub fn forget_eroded(&mut self, is_changed: impl Fn(Region) -> bool) {
+        self.erosion.iter_mut().for_each(|erosion| erosion.forget(self.grid, &is_changed));
     }
 
     /// The injected heights of a batch: those of the target, or `own`.
@@ -493,8 +481,7 @@ impl Pool {
             return Ok(BatchJob { heights, features, given, slots, nodes, erosion, normals });
         }
         let output = HeightBuffers { output: &self.heights, scratch: &self.scratch };
-        let map = self.size.map.zip(self.replace.as_ref()).filter(|_| kind == Heights::Given);
-        let map = map.map(|(coarser, pass)| GivenHeights { pass, coarser });
+        let map = given_by(self.size, self.replace.as_ref(), kind);
         // A map that is coarser than the regions gives heights of a coarser lattice, from which theirs follow.
         let (lattice, own) =
             (map.filter(|map| map.coarser > coarser), map.filter(|map| map.coarser <= coarser));
@@ -505,54 +492,28 @@ impl Pool {
                 Ok((facts_of(&slots)?, slots))
             };
             let generated = (!self.grid.is_eroded(self.size, level)).then(generated).transpose()?;
-            let (heights, replace) = replaced(gpu, pass, width, &self.heights)?;
+            let (heights, replace) = replaced(gpu, pass, (BATCH as u32, width), &self.heights)?;
             Ok(GivenJob { generated, heights, replace })
         };
         let given = own.map(given).transpose()?;
         let nodes = facts_of(&slots)?;
-        let erosion = self.erosion.as_ref().filter(|_| coarser == 0);
-        let erosion = erosion.map(|erosion| self.erosion_job(gpu, config, (erosion, shape), features, map));
-        let erosion = erosion.transpose()?;
+        let eroded = |erosion: &Erosion| -> Result<_, Error> {
+            let source = Source { generator: &self.generator, scratch: &self.scratch, config, features, map };
+            let erosion = erosion.prepare(gpu, (self.grid, level), source, &self.heights)?;
+            let slots = Buffer::new(gpu, "slots of eroded nodes", BATCH)?;
+            let buffers = NodeBuffers { heights: &erosion.heights, slots: &slots, tiles, facts };
+            let nodes = self.pass.prepare(gpu, shape, count, buffers)?;
+            Ok(ErodedNodes { erosion, slots, nodes })
+        };
+        let erosion = self.erosion.as_ref().filter(|_| coarser == 0).map(eroded).transpose()?;
         let normals = |pass: &NodeNormalsPass| {
-            let heights = erosion.as_ref().map_or(&self.heights, |job| &job.heights);
+            let heights = erosion.as_ref().map_or(&self.heights, |eroded| &eroded.erosion.heights);
             let buffers = NodeNormalsBuffers { heights, slots: &slots, normals: &self.normals };
             let spacing = config.terrain_scale * f64::from(1_u32 << coarser);
             pass.prepare(gpu, (shape, spacing), count, buffers)
         };
         let normals = self.normals_pass.as_ref().filter(|_| shape.finer > 0).map(normals).transpose()?;
         Ok(BatchJob { heights, features, given, slots, nodes, erosion, normals })
-    }
-
-    /// The job that makes the eroded tiles of nodes, whose heights before erosion are in `self.heights`.
-    fn erosion_job(
-        &self,
-        gpu: &Gpu,
-        config: &TerrainConfig,
-        (erosion, shape): (&Erosion, NodeShape),
-        features: usize,
-        map: Option<GivenHeights<'_>>,
-    ) -> Result<ErosionJob, Error> {
-        let Erosion { recipe, limit, windows, flows, .. } = erosion;
-        let (count, width) = (BATCH as u32, shape.region_width());
-        let wide = width + 2 * recipe.apron(0);
-        let regions = Regions { count, width: wide, coarser: 0 };
-        let output = HeightBuffers { output: &windows[0], scratch: &self.scratch };
-        let (lattice, own) = (map.filter(|map| map.coarser > 0), map.filter(|map| map.coarser == 0));
-        let around = self.generator.prepare_given(gpu, config, regions, features, output, lattice)?;
-        let given = own.map(|map| replaced(gpu, map.pass, wide, &windows[0])).transpose()?;
-        let mut both =
-            windows.each_ref().map(|heights| Fields { heights: heights.clone(), width: wide, count });
-        both[1].width -= 2;
-        let eroding = Eroding { windows: &both, flows: flows.as_ref() };
-        let (mut steps, Fields { heights, .. }) = erosion.pass.prepare(gpu, eroding)?;
-        let points = BATCH * (width as usize).pow(2);
-        let buffers = LimitBuffers { origins: &self.heights, heights: &heights };
-        steps.push(erosion.limiting.prepare(gpu, *limit, points, buffers)?);
-        let slots = Buffer::new(gpu, "slots of eroded nodes", BATCH)?;
-        let buffers =
-            NodeBuffers { heights: &heights, slots: &slots, tiles: &self.tiles, facts: &self.facts };
-        steps.push(self.pass.prepare(gpu, shape, count, buffers)?);
-        Ok(ErosionJob { around, given, steps, slots, heights })
     }
 
     /// Stages what the jobs of the frame read, and the patches of new nodes.
@@ -568,7 +529,7 @@ impl Pool {
         if let Some(blend) = self.blend.as_ref().filter(|blend| blend.is_due) {
             blend.job.stage(staged, time)?;
         }
-        for Batch { heights, level, job, nodes } in &self.batches {
+        for Batch { heights, level, job, nodes, cut } in &self.batches {
             let job = &self.jobs[*heights as usize][*level][*job];
             let (mut slots, mut generated) = ([NO_SLOT; BATCH], [NO_SLOT; BATCH]);
             for ((slot, generated), new) in slots.iter_mut().zip(&mut generated).zip(nodes) {
@@ -582,20 +543,13 @@ impl Pool {
             }
             if let (Some(job), Some(erosion)) = (&job.erosion, &self.erosion) {
                 staged.elements(&job.slots, 0, &generated)?;
-                job.around.stage_regions(staged, &erosion.firsts_around(&firsts), features)?;
+                erosion.stage(staged, (&job.erosion, cut), (self.grid, nodes), features)?;
             }
             for (number, new) in nodes.iter().enumerate() {
-                let Some(NodeElevation { heights, around, .. }) = &new.elevation else { continue };
+                let Some(NodeElevation { heights, .. }) = &new.elevation else { continue };
                 match &job.given {
                     Some(given) => staged.elements(&given.heights, number * heights.len(), heights)?,
                     None => job.heights.stage_given(staged, number, heights)?,
-                }
-                match (&job.erosion, around) {
-                    (Some(ErosionJob { given: Some((given, _)), .. }), Some(around)) => {
-                        staged.elements(given, number * around.len(), around)?;
-                    }
-                    (Some(job), Some(around)) => job.around.stage_given(staged, number, around)?,
-                    _ => {}
                 }
             }
             let none = [0; NODE_FACTS as usize];
@@ -650,7 +604,7 @@ impl Pool {
 
     /// Records the jobs of the frame; if `reads_facts`, also a copy of all facts to the host.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: u64, reads_facts: bool) {
-        for Batch { heights, level, job, .. } in self.batches.drain(..) {
+        for Batch { heights, level, job, cut, .. } in self.batches.drain(..) {
             let job = &self.jobs[heights as usize][level][job];
             job.heights.record(encoder);
             if let Some(given) = &job.given {
@@ -658,10 +612,9 @@ impl Pool {
                 given.replace.record(encoder);
             }
             job.nodes.record(encoder);
-            if let Some(erosion) = &job.erosion {
-                erosion.around.record(encoder);
-                erosion.given.iter().for_each(|(_, replace)| replace.record(encoder));
-                erosion.steps.iter().for_each(|step| step.record(encoder));
+            if let Some((eroded, erosion)) = job.erosion.as_ref().zip(self.erosion.as_ref()) {
+                erosion.record(encoder, &eroded.erosion, &cut);
+                eroded.nodes.record(encoder);
             }
             job.normals.iter().for_each(|normals| normals.record(encoder));
         }
@@ -684,15 +637,21 @@ impl Pool {
     }
 }
 
-/// A buffer for the heights that a map gives to a batch of regions of `width` samples, and the job that puts them in place.
-fn replaced(
+/// The map that gives heights to batches of a kind.
+fn given_by(size: PoolSize, pass: Option<&ReplacePass>, kind: Heights) -> Option<GivenHeights<'_>> {
+    let map = size.map.zip(pass).filter(|_| kind == Heights::Given);
+    map.map(|(coarser, pass)| GivenHeights { pass, coarser })
+}
+
+/// A buffer for the heights that a map gives to `count` regions of `width` samples, and the job that puts them in place.
+pub(super) fn replaced(
     gpu: &Gpu,
     pass: &ReplacePass,
-    width: u32,
+    (count, width): (u32, u32),
     heights: &Buffer<i32>,
 ) -> Result<(Buffer<i32>, Job), Error> {
-    let given = Buffer::new(gpu, "given heights", BATCH * (width as usize).pow(2))?;
-    let replace = pass.prepare(gpu, width, BATCH as u32, ReplaceBuffers { given: &given, heights })?;
+    let given = Buffer::new(gpu, "given heights", count as usize * (width as usize).pow(2))?;
+    let replace = pass.prepare(gpu, width, count, ReplaceBuffers { given: &given, heights })?;
     Ok((given, replace))
 }
 
