@@ -22,8 +22,8 @@ use crate::terrain::recipe::Recipe;
 use crate::terrain::regions::{RegionJob, RegionPass};
 use crate::terrain::window::{Region, Regions};
 
-/// Blocks are at least this many times as wide as erosion reaches, if a node of some eroded level is. The ground that is eroded for a
-/// block is then at most (1 + 2/4)² times its area.
+/// The least width of a block, in reaches of erosion, unless even the coarsest eroded nodes are smaller. With the ground around it, the
+/// ground that is eroded for such a block has at most (1 + 2/4)² times its area.
 const TIMES_REACH: u32 = 4;
 
 /// Number of blocks that are kept, more than a batch of nodes needs.
