@@ -347,7 +347,7 @@ fn small_nodes_share_eroded_ground() {
     world.settle();
     let nodes = world.scene.terrain_statistics(world.land).expect("endless");
     println!("{nodes:?}");
-    // Sixteen nodes of level 0 share a square, of which there are 64.
+    // A square is as wide as a node of level 2, and 64 squares are kept.
     assert!(nodes.levels[2] > 64, "{nodes:?}");
     assert!(picture(&mut world) != before);
     world.view.set(camera).expect("valid");

@@ -100,7 +100,7 @@ struct BlockJob {
     features: usize,
 }
 
-/// What generates heights before erosion.
+/// The generator of heights before erosion, and what it needs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source<'a> {
     pub generator: &'a RegionPass,
@@ -165,15 +165,15 @@ impl Erosion {
         })
     }
 
-    /// The block that a node is cut from; `None` for a node that is eroded by itself.
-    fn block_of(&self, node: Node) -> Option<Node> {
-        let blocks = self.blocks.as_ref().filter(|blocks| node.level <= blocks.level)?;
-        Some(node.ancestor(blocks.level))
+    /// The blocks that nodes of a level are cut from; `None` for nodes that are eroded by themselves.
+    fn blocks_of(&self, level: u32) -> Option<&Blocks> {
+        self.blocks.as_ref().filter(|blocks| level <= blocks.level)
     }
 
     /// The region that is generated and eroded for a node.
     pub fn around(&self, grid: Grid, node: Node) -> Region {
-        grid.region_of(self.block_of(node).unwrap_or(node)).grown(self.recipe.apron(0))
+        let block = self.blocks_of(node.level).map_or(node, |blocks| node.ancestor(blocks.level));
+        grid.region_of(block).grown(self.recipe.apron(0))
     }
 
     /// Forgets the blocks whose region, with the samples around it, is changed.
@@ -209,12 +209,12 @@ impl Erosion {
         features: &Features,
     ) -> Result<Cut, Error> {
         let mut cut = Cut::default();
-        let Some(blocks) = &mut self.blocks else { return Ok(cut) };
+        let is_cut = |blocks: &&mut Blocks| nodes.iter().all(|new| new.node.level <= blocks.level);
+        let Some(blocks) = self.blocks.as_mut().filter(is_cut) else { return Ok(cut) };
         blocks.uses += 1;
-        let level = blocks.level;
-        for NewNode { node, elevation, .. } in nodes.iter().filter(|new| new.node.level <= level) {
+        for NewNode { node, elevation, .. } in nodes {
             let given = elevation.as_ref().and_then(|elevation| elevation.around.clone());
-            let block = node.ancestor(level);
+            let block = node.ancestor(blocks.level);
             cut.new.extend(blocks.take(block, given));
             let slot = blocks.kept.get(&block).map_or(0, |kept| kept.slot);
             let (first, start) = (grid.first_of(*node), grid.first_of(block));
@@ -296,17 +296,15 @@ impl Erosion {
         origins: &Buffer<i32>,
     ) -> Result<ErosionJob, Error> {
         let (count, width) = (BATCH as u32, grid.shape(level).region_width());
-        let blocks = self.blocks.as_ref().filter(|blocks| level <= blocks.level);
+        let blocks = self.blocks_of(level);
         let own = blocks.is_none().then(|| self.regions(gpu, (count, width), source)).transpose()?;
         // The window that does not have the eroded heights is free.
         let is_in_first = self.recipe.apron(0).is_multiple_of(2);
         let heights = self.windows[usize::from(is_in_first)].clone();
         let corners: Vec<u32> = (0..count).map(|at| at * width * width).collect();
         let corners = Buffer::from_slice(gpu, "corners of nodes", &corners)?;
-        let (eroded, eroded_width) = match (&own, blocks) {
-            (None, Some(blocks)) => (&blocks.heights, blocks.width),
-            _ => (&self.windows[usize::from(!is_in_first)], width),
-        };
+        let eroded = (&self.windows[usize::from(!is_in_first)], width);
+        let (eroded, eroded_width) = blocks.map_or(eroded, |blocks| (&blocks.heights, blocks.width));
         let buffers = LimitBuffers { origins, eroded, corners: &corners, heights: &heights };
         let shape = LimitShape { count, width, eroded_width };
         let limit = self.limiting.prepare(gpu, self.limit, shape, buffers)?;

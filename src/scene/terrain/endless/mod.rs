@@ -195,7 +195,7 @@ pub(in crate::scene) struct Endless {
     tables: Arc<Mutex<Vec<ViewTable>>>,
     ground: FinestGround,
     elevation: Option<Elevation>,
-    /// What the map gives to regions that are eroded in this frame: nodes share them.
+    /// The map's heights of regions that this frame erodes, `None` while they are on their way. Nodes share regions.
     given_around: Vec<(Region, Option<Arc<Vec<i32>>>)>,
     /// The holes; `None` for terrain that was added without.
     holes: Option<Vec<TerrainHole>>,
