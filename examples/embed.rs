@@ -5,9 +5,9 @@
 
 use glam::{DVec3, Vec3};
 use relievo::gpu::Gpu;
-use relievo::ops::terrain::config::{Offset, TerrainConfig};
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::features::Features;
-use relievo::ops::terrain::height::{HeightBatch, HeightPass};
+use relievo::ops::terrain::regions::{HeightBatch, RegionPass};
 use relievo::ops::terrain::window::Windows;
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, Scene, TerrainSource};
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Set-up. With a margin of one sample, shading agrees across patches.
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());
     let config = TerrainConfig::new(129, 40.0, "embedded")?;
-    let pass = HeightPass::new(&gpu, Offset::Signed, None)?;
+    let pass = RegionPass::new(&gpu, &config, None)?;
     let batch = HeightBatch::new(&gpu, &pass, &config, Windows { count: 9, apron: 1 }, 0)?;
     // The scene shares the heights, which show nothing yet. Nine patches fit one buffer; a batch beyond 128 MiB has several
     // parts, each a terrain.

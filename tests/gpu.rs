@@ -16,11 +16,11 @@ use relievo::ops::animation::instance::Wrap;
 use relievo::ops::animation::keyframe_cursor::KeyframeCursorPass;
 use relievo::ops::animation::local_to_model::LocalToModelPass;
 use relievo::ops::animation::sample::SamplePass;
-use relievo::ops::terrain::config::{Offset, TerrainConfig};
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::height::reference::height;
-use relievo::ops::terrain::height::{HeightBatch, HeightPass};
+use relievo::ops::terrain::regions::{HeightBatch, RegionPass};
 use relievo::ops::terrain::window::{Window, Windows};
 use relievo_lab::harness::{TimedBy, Timer};
 
@@ -39,7 +39,7 @@ fn foreign_with_instance() -> (wgpu::Instance, wgpu::Device, wgpu::Queue) {
 
 fn heights_equal_the_reference(gpu: &Gpu) {
     let config = TerrainConfig::new(65, 20.0, "device").expect("valid");
-    let pass = HeightPass::new(gpu, Offset::Signed, None).expect("compiled");
+    let pass = RegionPass::new(gpu, &config, None).expect("compiled");
     let batch = HeightBatch::new(gpu, &pass, &config, Windows { count: 2, apron: 0 }, 0).expect("allocated");
     batch.set(gpu, &[[3, 4], [-1, 0]], &Features::default()).expect("set");
     gpu.run("test", |encoder| batch.record(encoder)).expect("run");
@@ -138,7 +138,7 @@ fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_els
     let (device, queue) = foreign();
     for gpu in [new_gpu(), Gpu::from_wgpu(device, queue)] {
         let config = TerrainConfig::new(4097, 20.0, "large").expect("valid");
-        let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
+        let pass = RegionPass::new(&gpu, &config, None).expect("compiled");
         let apron = 850;
         match HeightBatch::new(&gpu, &pass, &config, Windows { count: 1, apron }, 0) {
             Ok(batch) => {
@@ -167,7 +167,7 @@ fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_els
 fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     let gpu = new_gpu();
     let config = TerrainConfig::new(1025, 20.0, "split").expect("valid");
-    let pass = HeightPass::new(&gpu, Offset::Signed, None).expect("compiled");
+    let pass = RegionPass::new(&gpu, &config, None).expect("compiled");
     let count = 33_u32;
     let batch = HeightBatch::new(&gpu, &pass, &config, Windows { count, apron: 0 }, 0).expect("allocated");
     assert!(batch.fields().len() == 2, "33 patches of 4.2 MB exceed one binding of 128 MiB");

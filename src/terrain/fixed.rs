@@ -86,12 +86,13 @@ pub enum FeatureMode {
 }
 
 impl FeatureMode {
-    /// Value of the shaders' constant `FEATURES` for this mode. In the shaders, 0 means that there are no features.
+    /// Value of the shaders' constant `FEATURES` for a mode; `None`: without features.
     #[cfg(feature = "gpu")]
-    pub(crate) fn code(self) -> u32 {
-        match self {
-            Self::Keep => features::FEATURES_KEEP,
-            Self::Additive => features::FEATURES_ADDITIVE,
+    pub(crate) fn code_of(mode: Option<Self>) -> u32 {
+        match mode {
+            None => 0,
+            Some(Self::Keep) => features::FEATURES_KEEP,
+            Some(Self::Additive) => features::FEATURES_ADDITIVE,
         }
     }
 }

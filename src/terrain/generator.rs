@@ -12,10 +12,9 @@ use crate::terrain::despike::{DespikeBuffers, DespikePass};
 use crate::terrain::erosion::{Eroding, ErosionPass};
 use crate::terrain::features::FeatureIndex;
 use crate::terrain::fields::{Fields, REMEDY, after};
-use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::pad::{PadPass, Surround, surrounds};
 use crate::terrain::recipe::Recipe;
-use crate::terrain::regions::RegionPass;
+use crate::terrain::regions::{HeightBuffers, HeightScratch, RegionPass};
 use crate::terrain::window::Lattice;
 use crate::terrain::window::{Window, Windows};
 

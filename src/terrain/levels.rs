@@ -8,12 +8,12 @@ use crate::terrain::features::{FeatureIndex, Features};
 use crate::terrain::fields::REMEDY;
 use crate::terrain::lattice::{base_lattice, corners};
 use crate::terrain::replace::{ReplaceBuffers, ReplacePass};
-use crate::terrain::window::{Lattice, Region, Regions, SMOOTH_RIM, Span, Window, Windows};
+use crate::terrain::window::{Lattice, Region, Regions, SMOOTH_RIM, Span, Windows};
 use crate::{Error, InputError};
 
 /// The kernel that computes one level of subdivision from the next coarser level.
 #[derive(Debug, Clone)]
-pub(in crate::terrain) struct LevelPass {
+pub(crate) struct LevelPass {
     pub label: &'static str,
     /// The dispatches of a level, in order.
     pub stages: Vec<LevelStage>,
@@ -24,14 +24,14 @@ pub(in crate::terrain) struct LevelPass {
 
 /// A dispatch of the kernel.
 #[derive(Debug, Clone)]
-pub(in crate::terrain) struct LevelStage {
+pub(crate) struct LevelStage {
     pub kernel: Kernel,
     pub threads: LevelThreads,
 }
 
 /// The work of one thread of a stage.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::terrain) enum LevelThreads {
+pub(crate) enum LevelThreads {
     /// Computes the four fine points that belong to a coarse point.
     Points,
     /// Computes the center of a coarse cell that has another cell on every side.
@@ -56,7 +56,7 @@ fn centers(coarse_width: u32) -> u32 {
 
 /// Buffers of the dispatches that compute the lattice `fine` from the lattice `coarse`.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::terrain) struct LevelBuffers<'a> {
+pub(crate) struct LevelBuffers<'a> {
     pub level: &'a Uniform<Level>,
     pub origins: &'a Buffer<[i32; 2]>,
     pub coarse: &'a Buffer<i32>,
@@ -67,29 +67,12 @@ pub(in crate::terrain) struct LevelBuffers<'a> {
 }
 
 impl LevelPass {
-    /// Prepares the generation of `windows`. The configuration must be valid, and its border mode must match this kernel.
-    ///
-    /// # Errors
-    /// [`InputError`] for an apron out of bounds, and for buffers that are too short; [`GpuError`].
-    pub fn prepare(
-        &self,
-        gpu: &Gpu,
-        config: &TerrainConfig,
-        windows: Windows,
-        feature_capacity: usize,
-        buffers: HeightBuffers<'_>,
-    ) -> Result<HeightJob, Error> {
-        Window { patch: [0, 0], apron: windows.apron }.validate(config)?;
-        let regions = windows.regions(config);
-        let job = self.prepare_regions(gpu, config, regions, feature_capacity, buffers, None)?;
-        Ok(HeightJob { apron: windows.apron, ..job })
-    }
-
-    /// Prepares the generation of `regions`, with given heights on one lattice or none. The configuration must be valid.
+    /// Prepares the generation of `regions`, with given heights on one lattice or none. The configuration must be valid, and that of
+    /// this kernel.
     ///
     /// # Errors
     /// [`InputError`] for regions coarser than the base lattice, and for buffers that are too short; [`GpuError`].
-    pub fn prepare_regions(
+    pub fn prepare(
         &self,
         gpu: &Gpu,
         config: &TerrainConfig,
@@ -97,12 +80,9 @@ impl LevelPass {
         feature_capacity: usize,
         buffers: HeightBuffers<'_>,
         given: Option<GivenHeights<'_>>,
-    ) -> Result<HeightJob, Error> {
+    ) -> Result<LevelJob, Error> {
         let Regions { count, width, coarser } = regions;
         let HeightBuffers { output, scratch } = buffers;
-        let bound = || "must be \"diamondSquare\" in this pass: NoisePass makes the others";
-        let is_square = config.generator == HeightGenerator::DiamondSquare;
-        InputError::check(is_square, "generator", format!("{:?}", config.generator).to_lowercase(), bound)?;
         // One level is subdivided at least: the output is no base lattice.
         InputError::check_within("coarser", coarser, 0..=config.levels().saturating_sub(1))?;
         let widths = level_widths(config, width, coarser);
@@ -148,10 +128,8 @@ impl LevelPass {
             origins.push(starts);
         }
         let job = Job::new(gpu, self.label, steps)?;
-        Ok(HeightJob {
+        Ok(LevelJob {
             config: config.clone(),
-            count,
-            apron: 0,
             coarser,
             widths,
             base,
@@ -202,7 +180,7 @@ fn points(width: u32, count: u32) -> usize {
 /// Buffers for the generation of a batch of windows.
 #[derive(Debug, Clone, Copy)]
 pub struct HeightBuffers<'a> {
-    /// Written: the heights, one window after the other. The buffer must hold [`HeightJob::output_points`] heights or more.
+    /// Written: the heights, one window after the other. The buffer must hold [`Windows::points`] heights or more.
     pub output: &'a Buffer<i32>,
     /// Scratch memory that was made for the same configuration and windows.
     pub scratch: &'a HeightScratch,
@@ -286,12 +264,10 @@ impl HeightScratch {
     }
 }
 
-/// A prepared generation of a batch of windows. Set the patches, then record any number of times.
+/// A prepared generation of a batch of regions by levels of subdivision.
 #[derive(Debug, Clone)]
-pub struct HeightJob {
+pub(crate) struct LevelJob {
     config: TerrainConfig,
-    count: u32,
-    apron: u32,
     coarser: u32,
     widths: Vec<u32>,
     base: Buffer<i32>,
@@ -310,65 +286,21 @@ struct GivenLattice {
     heights: Buffer<i32>,
 }
 
-impl HeightJob {
-    /// Number of heights in all `windows` together. The output buffer must hold at least this many.
-    pub fn output_points(config: &TerrainConfig, windows: Windows) -> usize {
-        points(config.patch_size + 2 * windows.apron, windows.count)
-    }
-
-    /// Sets the patches and features for the next recordings. The number of patches must not exceed the prepared count.
-    ///
-    /// # Errors
-    /// [`InputError`] for too many patches or patches out of bounds; [`GpuError::Limit`] for more features than the capacity.
-    pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
-        self.check_count("patches.len", patches.len())?;
-        let windows = patches.iter().map(|patch| Window { patch: *patch, apron: self.apron });
-        windows.clone().try_for_each(|window| window.validate(&self.config))?;
-        let regions: Vec<Region> = windows.map(|window| window.region(&self.config)).collect();
-        let worlds: Vec<_> = patches.iter().map(|patch| Features::world_of(&self.config, *patch)).collect();
-        self.write(&mut &*gpu, &regions, &worlds, features)
-    }
-
-    /// Sets the regions, by their first samples, and features for the next recordings ([`Region::first`]). The number of regions
-    /// must not exceed the prepared count.
-    ///
-    /// # Errors
-    /// [`InputError`] for too many regions or regions out of bounds; [`GpuError::Limit`] for more features than the capacity.
-    pub(crate) fn set_regions(
-        &self,
-        to: &mut impl Upload,
-        firsts: &[[i64; 2]],
-        features: &Features,
-    ) -> Result<(), Error> {
-        self.check_count("firsts.len", firsts.len())?;
-        let width = self.widths[self.widths.len() - 1];
-        let region = |first: &[i64; 2]| Region { first: *first, width, coarser: self.coarser };
-        let regions: Vec<Region> = firsts.iter().map(region).collect();
-        regions.iter().try_for_each(|region| region.validate(&self.config))?;
-        self.write(to, &regions, &vec![[0, 0]; firsts.len()], features)
-    }
-
+impl LevelJob {
     /// Stages the given heights of a region of the batch, in the order of [`lattice_region`].
     ///
     /// # Errors
     /// [`GpuError`].
-    pub(crate) fn stage_given(
-        &self,
-        to: &mut impl Upload,
-        number: usize,
-        heights: &[i32],
-    ) -> Result<(), GpuError> {
+    pub fn stage_given(&self, to: &mut impl Upload, number: usize, heights: &[i32]) -> Result<(), GpuError> {
         let Some(given) = &self.given else { return Ok(()) };
         to.elements(&given.heights, number * points(self.widths[given.level], 1), heights)
     }
 
-    fn check_count(&self, path: &str, count: usize) -> Result<(), InputError> {
-        let bound = || format!("must be at most {}, the batch's count", self.count);
-        InputError::check(count <= self.count as usize, path, count, bound)
-    }
-
     /// Writes the base lattices, the origins and the features of regions. `worlds` are the worlds of their features.
-    fn write(
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] for more features than the capacity.
+    pub fn write(
         &self,
         to: &mut impl Upload,
         regions: &[Region],
@@ -421,12 +353,9 @@ impl HeightJob {
         features.on_lattice(world, lattice.grown(rim(&self.config)), true)
     }
 
-    /// Number of features that regions, given by their first samples, need room for.
-    pub(crate) fn feature_count(&self, firsts: &[[i64; 2]], features: &Features) -> usize {
-        let width = self.widths[self.widths.len() - 1];
-        let region = |first: &[i64; 2]| Region { first: *first, width, coarser: self.coarser };
-        let regions: Vec<Region> = firsts.iter().map(region).collect();
-        let origins = self.origins_of(&regions).into_iter().enumerate();
+    /// Number of features that regions need room for.
+    pub fn feature_count(&self, regions: &[Region], features: &Features) -> usize {
+        let origins = self.origins_of(regions).into_iter().enumerate();
         let needed = |(level, origins): (usize, Vec<[i32; 2]>)| {
             origins
                 .into_iter()
@@ -436,7 +365,7 @@ impl HeightJob {
         origins.map(needed).sum()
     }
 
-    /// Records the generation of all windows of the batch.
+    /// Records the generation of all regions of the batch.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         self.job.record(encoder);
     }
@@ -445,6 +374,7 @@ impl HeightJob {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terrain::window::Window;
 
     /// Each scratch buffer is exactly as large as the largest level that it ever holds.
     #[test]

@@ -60,6 +60,19 @@ impl Windows {
     pub(crate) fn regions(&self, config: &TerrainConfig) -> Regions {
         Regions { count: self.count, width: config.patch_size + 2 * self.apron, coarser: 0 }
     }
+
+    /// Number of samples of all windows together.
+    pub fn points(&self, config: &TerrainConfig) -> usize {
+        self.regions(config).points()
+    }
+}
+
+#[cfg(feature = "gpu")]
+impl Regions {
+    /// Number of samples of all regions together.
+    pub(crate) fn points(&self) -> usize {
+        self.count as usize * (self.width as usize).pow(2)
+    }
 }
 
 impl Region {

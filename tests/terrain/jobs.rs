@@ -4,21 +4,20 @@ use relievo::Error;
 use relievo::gpu::{Buffer, Gpu};
 use relievo::ops::terrain::blend::{BlendBuffers, BlendPass, Shading, WeightMode};
 use relievo::ops::terrain::border::BorderPass;
-use relievo::ops::terrain::config::{Border, Offset, TerrainConfig};
+use relievo::ops::terrain::config::{Border, TerrainConfig};
 use relievo::ops::terrain::cover::{Cover, MapZone};
 use relievo::ops::terrain::despike::{Despike, DespikeBuffers, DespikePass};
 use relievo::ops::terrain::features::{FeatureIndex, Features};
 use relievo::ops::terrain::fields::Fields;
 use relievo::ops::terrain::fixed::FeatureMode;
-use relievo::ops::terrain::height::{HeightBuffers, HeightJob, HeightPass, HeightScratch};
 use relievo::ops::terrain::hydraulic::{Hydraulic, HydraulicBuffers, HydraulicPass};
 use relievo::ops::terrain::morph::{HeightMorphPass, MorphBuffers};
 use relievo::ops::terrain::normals::NormalsPass;
 use relievo::ops::terrain::pad::PadPass;
+use relievo::ops::terrain::regions::{HeightBuffers, HeightScratch, RegionPass};
 use relievo::ops::terrain::texture::TerrainTexture;
 use relievo::ops::terrain::thermal::{Thermal, ThermalBuffers, ThermalPass};
 use relievo::ops::terrain::window::Windows;
-use relievo::ops::terrain::wrap::WrapPass;
 
 use crate::harness::gpu;
 
@@ -247,9 +246,9 @@ fn pad() {
 fn generation() {
     let gpu = gpu();
     let config = TerrainConfig::new(5, 1.0, "short").expect("valid");
-    let height = HeightPass::new(&gpu, Offset::Signed, Some(FeatureMode::Keep)).expect("compiled");
+    let height = RegionPass::new(&gpu, &config, Some(FeatureMode::Keep)).expect("compiled");
     let scratch = HeightScratch::new(&gpu, &config, Windows { count: 2, apron: 1 }).expect("allocated");
-    let points = HeightJob::output_points(&config, Windows { count: 2, apron: 1 });
+    let points = Windows { count: 2, apron: 1 }.points(&config);
     let prepare = |apron, output| {
         let buffers = HeightBuffers { output: &buffer(&gpu, output), scratch: &scratch };
         height.prepare(&gpu, &config, Windows { count: 2, apron }, 0, buffers)
@@ -263,14 +262,20 @@ fn generation() {
     refuses(job.set(&gpu, &three, &features), &["patches.len = 3: must be at most 2, the batch's count"]);
 
     let config = TerrainConfig { border: Border::Wrap, ..config };
-    let wrap = WrapPass::new(&gpu, Offset::Signed, None).expect("compiled");
+    let wrap = RegionPass::new(&gpu, &config, None).expect("compiled");
     let prepare = |output, scratch_for| {
         let scratch =
             HeightScratch::new(&gpu, &config, Windows { count: scratch_for, apron: 0 }).expect("allocated");
         let buffers = HeightBuffers { output: &buffer(&gpu, output), scratch: &scratch };
-        wrap.prepare(&gpu, &config, 2, 0, buffers).map(|_| ())
+        wrap.prepare(&gpu, &config, Windows { count: 2, apron: 0 }, 0, buffers).map(|_| ())
     };
     assert!(prepare(50, 2).is_ok());
     refuses(prepare(49, 2), &["output = [49 elements]", "at least 50"]);
     refuses(prepare(50, 1), &["scratch = [9 elements]", "at least 18"]);
+    let buffers = HeightBuffers { output: &buffer(&gpu, points), scratch: &scratch };
+    let other = height.prepare(&gpu, &config, Windows { count: 2, apron: 0 }, 0, buffers);
+    refuses(
+        other.map(|_| ()),
+        &["is_seamless: false", "is_seamless: true", "for which the pass was compiled"],
+    );
 }

@@ -148,7 +148,7 @@ impl TerrainSource {
     /// which patches are culled, and how queries about the ground are answered. To show other patches, call
     /// [`Scene::set_patches`](crate::scene::Scene::set_patches).
     ///
-    /// A [`Generator`](crate::terrain::generator::Generator) or a [`HeightBatch`](crate::terrain::height::HeightBatch)
+    /// A [`Generator`](crate::terrain::generator::Generator) or a [`HeightBatch`](crate::terrain::regions::HeightBatch)
     /// splits fields that exceed a binding of the device. Add each part as a terrain of its own.
     ///
     /// ```no_run

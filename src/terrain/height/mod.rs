@@ -2,14 +2,8 @@
 //! arithmetic is on integers, so that every device computes the same bits.
 
 #[cfg(feature = "gpu")]
-mod batch;
-#[cfg(feature = "gpu")]
 mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use crate::terrain::levels::{HeightBuffers, HeightJob, HeightScratch};
-#[cfg(feature = "gpu")]
-pub use batch::HeightBatch;
-#[cfg(feature = "gpu")]
-pub use pass::HeightPass;
+pub(crate) use pass::pass;

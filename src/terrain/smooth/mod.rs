@@ -11,4 +11,4 @@ mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use pass::SmoothPass;
+pub(crate) use pass::pass;

@@ -7,4 +7,4 @@ mod pass;
 pub mod reference;
 
 #[cfg(feature = "gpu")]
-pub use pass::WrapPass;
+pub(crate) use pass::pass;

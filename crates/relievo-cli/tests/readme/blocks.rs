@@ -10,9 +10,9 @@ use relievo::gpu::{Gpu, Options};
 use relievo::ops::animation::ModelMatrices;
 use relievo::ops::skinning::frame::{SkinFrame, SkinOptions};
 use relievo::ops::skinning::{Blend, InstanceLod};
-use relievo::ops::terrain::config::{Offset, TerrainConfig};
+use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::features::Features;
-use relievo::ops::terrain::height::{HeightBatch, HeightPass};
+use relievo::ops::terrain::regions::{HeightBatch, RegionPass};
 use relievo::ops::terrain::window::Windows;
 use relievo::render::{Layer, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
@@ -137,7 +137,7 @@ fn heights(
     // begin docs/embedding.md
     let gpu = Gpu::from_wgpu(device.clone(), queue.clone());              // yours, or Gpu::headless
     let config = TerrainConfig::new(257, 40.0, "any text")?;
-    let pass = HeightPass::new(&gpu, Offset::Signed, None)?;              // compiles once
+    let pass = RegionPass::new(&gpu, &config, None)?;                     // compiles once
     let windows = Windows { count: 64, apron: 1 };                         // patches, with a sample of margin
     let batch = HeightBatch::new(&gpu, &pass, &config, windows, 0)?;      // no injected points; allocates once
     let land = TerrainSource::from_fields(config, batch.fields()[0].clone(), &[]); // a scene shares the heights

@@ -13,13 +13,12 @@ use crate::terrain::config::TerrainConfig;
 use crate::terrain::erosion::{Eroding, ErosionPass};
 use crate::terrain::features::Features;
 use crate::terrain::fields::Fields;
-use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::hydraulic::reference::Flow;
 use crate::terrain::levels::GivenHeights;
 use crate::terrain::limit::{ErosionLimit, LimitBuffers, LimitPass, LimitShape};
 use crate::terrain::quadtree::Node;
 use crate::terrain::recipe::Recipe;
-use crate::terrain::regions::{RegionJob, RegionPass};
+use crate::terrain::regions::{HeightBuffers, HeightScratch, RegionJob, RegionPass};
 use crate::terrain::window::{Region, Regions};
 
 /// The least width of a block, in reaches of erosion, unless even the coarsest eroded nodes are smaller. With the ground around it, the

@@ -12,7 +12,6 @@ use crate::terrain::config::TerrainConfig;
 use crate::terrain::cover::TILES_PERIOD;
 use crate::terrain::features::Features;
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::height::{HeightBuffers, HeightScratch};
 use crate::terrain::levels::{GivenHeights, lattice_region};
 use crate::terrain::limit::ErosionLimit;
 use crate::terrain::morph::{HeightMorphPass, Morph, MorphBuffers, MorphJob};
@@ -20,7 +19,7 @@ use crate::terrain::node::{NODE_FACTS, NODE_MARGIN, NodeBuffers, NodeFacts, Node
 use crate::terrain::node_normals::{NodeNormalsBuffers, NodeNormalsPass};
 use crate::terrain::quadtree::Node;
 use crate::terrain::recipe::Recipe;
-use crate::terrain::regions::{RegionJob, RegionPass};
+use crate::terrain::regions::{HeightBuffers, HeightScratch, RegionJob, RegionPass};
 use crate::terrain::remainder::remainder_reach;
 use crate::terrain::replace::{ReplaceBuffers, ReplacePass};
 use crate::terrain::window::{Region, Regions};

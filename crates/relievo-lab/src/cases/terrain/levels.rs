@@ -11,8 +11,7 @@ use relievo::ops::terrain::config::{Border, HeightGenerator, Offset, TerrainConf
 use relievo::ops::terrain::features::{FeatureFile, Features};
 use relievo::ops::terrain::field::region;
 use relievo::ops::terrain::fixed::FeatureMode;
-use relievo::ops::terrain::height::{HeightBuffers, HeightJob, HeightScratch};
-use relievo::ops::terrain::regions::{RegionJob, RegionPass};
+use relievo::ops::terrain::regions::{HeightBuffers, HeightScratch, RegionJob, RegionPass};
 use relievo::ops::terrain::window::{Window, Windows};
 use relievo::ops::terrain::wrap::reference::wrap;
 
@@ -56,7 +55,7 @@ pub(super) async fn check(
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
     let windows = Windows { count: patches.len() as u32, apron };
-    let output = Poisoned::new(gpu, HeightJob::output_points(config, windows))?;
+    let output = Poisoned::new(gpu, windows.points(config))?;
     let job = prepared(gpu, config, features, windows, &output.buffer)?;
     job.set(gpu, patches, features)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
@@ -98,7 +97,7 @@ pub(super) fn measure_levels(
     let gpu = bench.gpu;
     let patches = some_patches(count);
     let windows = Windows { count, apron: 0 };
-    let points = HeightJob::output_points(config, windows);
+    let points = windows.points(config);
     let output = Buffer::new(gpu, "heights", points)?;
     let job = prepared(gpu, config, features, windows, &output)?;
     job.set(gpu, &patches, features)?;

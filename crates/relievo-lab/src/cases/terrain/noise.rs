@@ -4,8 +4,7 @@ use relievo::Error;
 use relievo::ops::terrain::config::{HeightGenerator, HeightInterpolation, TerrainConfig};
 use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::field::region;
-use relievo::ops::terrain::height::{HeightBuffers, HeightScratch};
-use relievo::ops::terrain::regions::RegionPass;
+use relievo::ops::terrain::regions::{HeightBuffers, HeightScratch, RegionPass};
 use relievo::ops::terrain::window::{Region, Regions};
 
 use crate::cases::terrain::check_exact;

@@ -1,6 +1,6 @@
 //! Batches with any number of windows, split into parts that each fit a storage binding.
 
-use super::{HeightBuffers, HeightJob, HeightPass, HeightScratch};
+use super::{HeightBuffers, HeightScratch, RegionJob, RegionPass};
 use crate::gpu::Gpu;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
@@ -12,7 +12,7 @@ use crate::{Error, InputError};
 /// together.
 #[derive(Debug, Clone)]
 pub struct HeightBatch {
-    jobs: Vec<HeightJob>,
+    jobs: Vec<RegionJob>,
     fields: Vec<Fields>,
     scratch: HeightScratch,
 }
@@ -21,16 +21,15 @@ impl HeightBatch {
     /// Allocates all buffers for `windows`. Each part of the batch can hold `feature_capacity` injected points.
     ///
     /// # Errors
-    /// [`InputError`] as [`HeightPass::prepare`]; [`crate::gpu::GpuError`].
+    /// [`InputError`] as [`RegionPass::prepare`]; [`crate::gpu::GpuError`].
     pub fn new(
         gpu: &Gpu,
-        pass: &HeightPass,
+        pass: &RegionPass,
         config: &TerrainConfig,
         windows: Windows,
         feature_capacity: usize,
     ) -> Result<Self, Error> {
         let Windows { count, apron } = windows;
-        config.validate()?;
         Window { patch: [0, 0], apron }.validate(config)?;
         let largest = Fields::most(gpu, config.patch_size + 2 * apron) as u32;
         let parts = count.div_ceil(largest).max(1);
@@ -55,7 +54,7 @@ impl HeightBatch {
     /// Sets the patches and features for the next recordings. Patches fill the parts of the batch in order.
     ///
     /// # Errors
-    /// The errors of [`HeightJob::set`].
+    /// The errors of [`RegionJob::set`].
     pub fn set(&self, gpu: &Gpu, patches: &[[i32; 2]], features: &Features) -> Result<(), Error> {
         let mut rest = patches;
         for (job, fields) in self.jobs.iter().zip(&self.fields) {
