@@ -5,17 +5,17 @@ use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::field::region;
 use relievo::ops::terrain::window::Region;
 use relievo::scene::{
-    Camera, ElevationLayout, ElevationMap, ElevationTiles, EndlessLimits, FeatureFile, FeatureMode,
-    HeightGenerator, TerrainConfig, TerrainFeatures, TerrainRecipe, TerrainSource,
+    Camera, ElevationLayout, ElevationMap, ElevationTiles, FeatureFile, FeatureMode, HeightGenerator,
+    TerrainConfig, TerrainFeatures, TerrainRecipe, TerrainSource,
 };
 
-use crate::endless::{Path, ROUNDING, World, flight, holes, picture};
+use crate::endless::{Path, ROUNDING, World, flight, holes, picture, small_nodes};
 
 fn config(interpolation: HeightInterpolation) -> TerrainConfig {
     TerrainConfig {
-        coarse_levels: 6,
+        coarse_levels: 5,
         interpolation,
-        ..TerrainConfig::new(65, 160.0, "edited").expect("valid")
+        ..TerrainConfig::new(65, 80.0, "edited").expect("valid")
     }
 }
 
@@ -44,8 +44,7 @@ fn road(height: f64) -> Vec<([i32; 2], f64)> {
 
 fn source(config: &TerrainConfig, features: TerrainFeatures) -> TerrainSource {
     let recipe = TerrainRecipe { features, ..TerrainRecipe::new(config.clone()) };
-    let limits = EndlessLimits { nodes_per_frame: 128, ..EndlessLimits::default() };
-    TerrainSource::from(recipe).with_limits(limits)
+    TerrainSource::from(recipe).with_limits(small_nodes())
 }
 
 /// The height of the finest triangles with injected heights, from the definition alone.
@@ -67,7 +66,7 @@ fn a_flight_over_injected_heights_keeps_its_promise() {
         let config = config(interpolation);
         let features = features(&config, &road(height), mode);
         let mut world = World::of(&source(&config, features.clone()), [160, 90]);
-        let path = Path { from: [24.0, 60.0], frames: 20, metres: 200.0, height: 120.0, every: 5, step: 5 };
+        let path = Path { from: [24.0, 60.0], frames: 20, metres: 200.0, height: 120.0, every: 5, step: 9 };
         let flight = flight(&mut world, &|x, z| truth(&config, &features, x, z), &path);
         println!("{interpolation:?} {mode:?}: {flight:?}");
         assert_eq!(flight.holes, 0);
@@ -82,10 +81,10 @@ fn a_flight_over_injected_heights_keeps_its_promise() {
 fn edits_are_there_at_once() {
     let config = config(HeightInterpolation::Smooth);
     let none = TerrainFeatures::default();
-    let mut world = World::of(&source(&config, none.clone()), [160, 90]);
+    let mut world = World::of(&source(&config, none.clone()), [96, 54]);
     let ground = world.scene.ground(world.land, 23.0, -40.0).expect("valid").expect("ground").height;
     let (eye, target) = ([24.0, ground + 60.0, -10.0], [23.0, ground, -40.0]);
-    let camera = Camera::looking_at_world(eye, target, 0.9, [0.5, 12_000.0], [160, 90]);
+    let camera = Camera::looking_at_world(eye, target, 0.9, [0.5, 12_000.0], [96, 54]);
     let settled = |world: &mut World| {
         world.view.set(camera).expect("valid");
         world.settle();
@@ -118,7 +117,7 @@ fn edits_are_there_at_once() {
             assert!(most < 1.0 && drawn.iter().flatten().filter(near).count() > 3, "{most}");
         }
         let made = settled(&mut world);
-        let mut other = World::of(&source(&config, edited.clone()), [160, 90]);
+        let mut other = World::of(&source(&config, edited.clone()), [96, 54]);
         assert!(made == settled(&mut other), "{} features", edited.len());
         assert_eq!(made == first, edited.is_empty());
     }

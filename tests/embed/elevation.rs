@@ -14,7 +14,7 @@ use relievo::scene::{
     ElevationTiles, EndlessLimits, HeightGenerator, TerrainConfig, TerrainSource, TileNumber,
 };
 
-use crate::endless::{Path, ROUNDING, World, flight, holes, largest, offsets, picture, some};
+use crate::endless::{Path, ROUNDING, World, flight, holes, largest, offsets, picture, small_nodes, some};
 use crate::harness::Difference;
 
 pub fn config() -> TerrainConfig {
@@ -38,8 +38,7 @@ pub fn map(first: [i32; 2], size: [u32; 2], spacing: u32, margin: u32) -> Elevat
 }
 
 fn source(config: &TerrainConfig, elevation: Arc<dyn ElevationSource>) -> TerrainSource {
-    let limits = EndlessLimits { nodes_per_frame: 64, ..EndlessLimits::default() };
-    TerrainSource::endless(config.clone()).with_limits(limits).with_elevation(elevation)
+    TerrainSource::endless(config.clone()).with_limits(small_nodes()).with_elevation(elevation)
 }
 
 /// The height of the finest triangles over a map with the terrain's spacing, from the tiles of level 0 and the generator alone.

@@ -25,6 +25,11 @@ pub fn config() -> TerrainConfig {
     }
 }
 
+/// Limits for small pictures: larger nodes would be finer than their pixels.
+pub fn small_nodes() -> EndlessLimits {
+    EndlessLimits { nodes_per_frame: 128, node_size: 33, ..EndlessLimits::default() }
+}
+
 /// A scene of endless terrain, and the means to look at it.
 pub struct World {
     pub gpu: Gpu,
@@ -263,7 +268,7 @@ pub fn flight(world: &mut World, truth: &(impl Fn(f64, f64) -> f64 + Sync), path
 #[test]
 fn a_flight_has_no_holes_and_keeps_its_promise() {
     let config = config();
-    let limits = EndlessLimits { nodes_per_frame: 64, ..EndlessLimits::default() };
+    let limits = EndlessLimits { nodes_per_frame: 64, ..small_nodes() };
     let mut world = World::new(config.clone(), limits, [160, 90]);
     let path = Path { from: [1.0e6, 40.0], frames: 40, metres: 400.0, height: 150.0, every: 8, step: 7 };
     let flight = flight(&mut world, &|x, z| truth(&config, x, z), &path);
@@ -312,7 +317,7 @@ pub fn picture(world: &mut World) -> image::RgbaImage {
 fn a_place_looks_the_same_from_wherever_it_was_reached() {
     let (place, height) = ([2_000.0, -900.0], 30.0);
     let reached = |from: [f64; 2], frames: usize| {
-        let mut world = World::new(config(), EndlessLimits::default(), [320, 180]);
+        let mut world = World::new(config(), small_nodes(), [192, 108]);
         for frame in 0..frames {
             let part = frame as f64 / frames as f64;
             let at = [0, 1].map(|axis| from[axis] + (place[axis] - from[axis]) * part);
@@ -338,8 +343,7 @@ fn nodes_grow_with_the_logarithm_of_the_distance() {
         // Each further level is twice as high, so that the finer levels stay as they are.
         let scale_factor = 5.0 * f64::from(1 << coarse_levels);
         let config = TerrainConfig { coarse_levels, scale_factor, ..config() };
-        let limits = EndlessLimits { nodes_per_frame: 128, node_size: 33, ..EndlessLimits::default() };
-        let mut world = World::new(config, limits, [160, 90]);
+        let mut world = World::new(config, small_nodes(), [160, 90]);
         let camera = world.above([10.0, 10.0], 5.0);
         world.view.set(camera).expect("valid");
         world.settle();
@@ -353,12 +357,12 @@ fn nodes_grow_with_the_logarithm_of_the_distance() {
 
 #[test]
 fn nodes_are_made_again_after_a_loss() {
-    a_loss_leaves_no_trace(&TerrainSource::endless(config()));
+    a_loss_leaves_no_trace(&TerrainSource::endless(config()).with_limits(small_nodes()));
 }
 
 /// A lost device and a dropped encoder leave no trace: the picture is the same as before.
 pub fn a_loss_leaves_no_trace(source: &TerrainSource) {
-    let mut world = World::on(crate::harness::new_gpu(), source, [160, 90]);
+    let mut world = World::on(crate::harness::new_gpu(), source, [96, 54]);
     let camera = world.above([40.0, -700.0], 12.0);
     world.view.set(camera).expect("valid");
     world.scene.set_statistics(true).expect("counted");
@@ -393,7 +397,7 @@ pub fn a_loss_leaves_no_trace(source: &TerrainSource) {
 #[test]
 fn holes_are_left_out_and_closed_again() {
     let config = config();
-    let source = TerrainSource::endless(config.clone());
+    let source = TerrainSource::endless(config.clone()).with_limits(small_nodes());
     let (middle, radius) = ([24.5, -60.0], 9.25);
     let hole = TerrainHole::Circle { at: middle, radius };
     let mut world = World::of(&source.clone().with_holes(vec![hole.clone()]), [160, 120]);
@@ -467,7 +471,7 @@ fn holes_are_left_out_and_closed_again() {
 #[test]
 fn views_far_apart_and_a_shadow_have_their_own_detail() {
     let config = config();
-    let mut world = World::new(config.clone(), EndlessLimits::default(), [160, 90]);
+    let mut world = World::new(config.clone(), small_nodes(), [160, 90]);
     let (near, far) = (world.above([0.0, 0.0], 3.0), world.above([300_000.0, -80_000.0], 150.0));
     world.view.set(near).expect("valid");
     let mut other = world.scene.view(Quality::pixels(1.0)).expect("made");
@@ -502,7 +506,7 @@ fn views_far_apart_and_a_shadow_have_their_own_detail() {
 #[test]
 fn the_ground_of_the_host_is_the_finest() {
     let config = config();
-    let mut world = World::new(config.clone(), EndlessLimits::default(), [64, 36]);
+    let mut world = World::new(config.clone(), small_nodes(), [64, 36]);
     let camera = world.above([100.0, 100.0], 500.0);
     world.view.set(camera).expect("valid");
     world.frame();
@@ -590,7 +594,7 @@ fn the_ground_is_within_a_pixel_of_the_finest_heights() {
 fn finer_normals_show_finer_heights() {
     let shown = |pixels: f32, finer_normals: bool| {
         let config = TerrainConfig { scale_factor: 500.0, ..config() };
-        let limits = EndlessLimits { nodes_per_frame: 128, finer_normals, ..EndlessLimits::default() };
+        let limits = EndlessLimits { finer_normals, node_size: 17, ..small_nodes() };
         let mut world = World::new(config, limits, [160, 90]);
         world.view = world.scene.view(Quality::pixels(pixels)).expect("made");
         let camera = world.above([800.0, 2_000.0], 60.0);

@@ -15,12 +15,14 @@ use relievo::scene::{
 };
 
 use crate::edited::features;
-use crate::endless::{Path, ROUNDING, World, between, flight, holes, largest, offsets, picture, some};
+use crate::endless::{
+    Path, ROUNDING, World, between, flight, holes, largest, offsets, picture, small_nodes, some,
+};
 use crate::harness::{Difference, gpu};
 
-/// Steep mountains.
+/// Steep mountains, of which a kilometre is seen.
 fn config() -> TerrainConfig {
-    TerrainConfig { scale_factor: 600.0, ..crate::endless::config() }
+    TerrainConfig { scale_factor: 150.0, coarse_levels: 4, ..crate::endless::config() }
 }
 
 /// The most that erosion may move a height, in world units.
@@ -38,27 +40,12 @@ fn source(recipe: TerrainRecipe) -> TerrainSource {
 }
 
 fn limits() -> EndlessLimits {
-    EndlessLimits {
-        nodes_per_frame: 64,
-        view_distance: Some(2_500.0),
-        erosion_depth: DEPTH,
-        ..EndlessLimits::default()
-    }
-}
-
-/// The same with a short view and small nodes, which erode a quarter of the area.
-fn near(recipe: TerrainRecipe) -> TerrainSource {
-    TerrainSource::from(recipe).with_limits(EndlessLimits {
-        view_distance: Some(800.0),
-        node_size: 33,
-        ..limits()
-    })
+    EndlessLimits { view_distance: Some(400.0), erosion_depth: DEPTH, ..small_nodes() }
 }
 
 /// Nodes that are cut from shared squares of eroded ground: they are less than four times as wide as erosion reaches.
 fn small(recipe: TerrainRecipe) -> TerrainSource {
     TerrainSource::from(recipe).with_limits(EndlessLimits {
-        view_distance: Some(400.0),
         node_size: 9,
         nodes_per_frame: 256,
         capacity: 4096,
@@ -119,8 +106,8 @@ impl Truth {
 #[test]
 fn what_is_drawn_is_within_a_pixel_of_the_eroded_ground() {
     let truth = Truth::new();
-    let mut world = World::of(&source(recipe()), [160, 90]);
-    let mut plain = World::of(&source(TerrainRecipe::new(config())), [160, 90]);
+    let mut world = World::of(&source(recipe()), [96, 54]);
+    let mut plain = World::of(&source(TerrainRecipe::new(config())), [96, 54]);
     for (at, height, apart) in [([10.0, 20.0], 2.0, 1.0), ([9.0e6, -9.5e6], 60.0, 0.0)] {
         let camera = world.above(at, height);
         world.view.set(camera).expect("valid");
@@ -143,7 +130,7 @@ fn what_is_drawn_is_within_a_pixel_of_the_eroded_ground() {
 #[test]
 fn a_flight_over_eroded_ground_has_no_holes_and_keeps_its_promise() {
     let truth = Truth::new();
-    let mut world = World::of(&source(recipe()), [160, 90]);
+    let mut world = World::of(&source(recipe()), [96, 54]);
     let path = Path { from: [1.0e6, 40.0], frames: 24, metres: 300.0, height: 120.0, every: 6, step: 7 };
     let flight = flight(&mut world, &|x, z| truth.at(x, z), &path);
     println!("{flight:?}");
@@ -200,7 +187,8 @@ fn eroded_ground_is_closed_while_nodes_are_missing() {
         nodes_per_frame: 16,
         view_distance: Some(1_000.0),
         erosion_depth: 6.0,
-        ..EndlessLimits::default()
+        node_size: 17,
+        ..small_nodes()
     };
     let thermal = Some(Thermal { iterations: 12, talus: 1.0 });
     let recipe = TerrainRecipe { thermal, ..TerrainRecipe::new(config()) };
@@ -234,22 +222,22 @@ fn eroded_ground_is_closed_while_nodes_are_missing() {
 /// Erosion that reaches a few samples only is the same wherever nodes are made: a place has one picture.
 #[test]
 fn a_place_has_one_picture() {
-    let camera = |size: [u32; 2]| {
-        Camera::looking_at_world([40.0, 420.0, -700.0], [42.0, 380.0, -740.0], 0.9, [0.5, 12_000.0], size)
-    };
+    let place = [40.0, -700.0];
     let shown = |from: [f64; 2]| {
-        let mut world = World::of(&near(recipe()), [96, 54]);
+        let mut world = World::of(&source(recipe()), [96, 54]);
         let before = world.above(from, 30.0);
         world.view.set(before).expect("valid");
         world.settle();
-        world.view.set(camera([96, 54])).expect("valid");
+        let camera = world.above(place, 30.0);
+        world.view.set(camera).expect("valid");
         world.settle();
         picture(&mut world)
     };
     let one = shown([900.0, -700.0]);
     assert!(one == shown([-2_000.0, 5_000.0]));
-    let mut plain = World::of(&near(TerrainRecipe::new(config())), [96, 54]);
-    plain.view.set(camera([96, 54])).expect("valid");
+    let mut plain = World::of(&source(TerrainRecipe::new(config())), [96, 54]);
+    let camera = plain.above(place, 30.0);
+    plain.view.set(camera).expect("valid");
     plain.settle();
     let difference = Difference::of(&one, &picture(&mut plain), 3);
     println!("{difference:?}");
@@ -262,7 +250,7 @@ fn a_place_has_one_picture() {
 fn an_elevation_map_is_eroded() {
     type Source = fn(TerrainRecipe) -> TerrainSource;
     // Small nodes share eroded ground.
-    let cases: [(u32, u32, Source); 3] = [(1, 0, near), (1, 0, small), (8, 6, small)];
+    let cases: [(u32, u32, Source); 3] = [(1, 0, source), (1, 0, small), (8, 6, small)];
     for (spacing, margin, source) in cases {
         let config = crate::elevation::config();
         let map = crate::elevation::map([-60, -70], [90, 100], spacing, margin);
@@ -270,7 +258,7 @@ fn an_elevation_map_is_eroded() {
         let thermal = Thermal { iterations: 3, talus: 20.0 };
         let [mut eroded, plain] = [Some(thermal), None].map(|thermal| {
             let recipe = TerrainRecipe { thermal, ..TerrainRecipe::new(config.clone()) };
-            World::of(&source(recipe).with_elevation(tiles.clone()), [160, 90])
+            World::of(&source(recipe).with_elevation(tiles.clone()), [128, 72])
         });
         let ground = |world: &World, at: [f64; 2]| {
             world.scene.ground(world.land, at[0], at[1]).expect("valid").expect("ground").height
@@ -357,7 +345,7 @@ fn small_nodes_share_eroded_ground() {
 
 #[test]
 fn nodes_are_made_again_after_a_loss() {
-    crate::endless::a_loss_leaves_no_trace(&near(recipe()));
+    crate::endless::a_loss_leaves_no_trace(&source(recipe()));
 }
 
 /// Heights that are injected at run time are eroded as those that were there from the beginning.

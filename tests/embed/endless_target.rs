@@ -6,22 +6,21 @@ use relievo::scene::{
     Camera, Despike, EndlessLimits, Scene, TerrainConfig, TerrainMorph, TerrainRecipe, TerrainSource,
 };
 
-use crate::endless::{ROUNDING, World, between, config, holes, largest, offsets, picture, some};
+use crate::endless::{ROUNDING, World, between, holes, largest, offsets, picture, small_nodes, some};
 use crate::harness::{Difference, gpu};
+
+/// Ground of which two kilometres are seen.
+fn config() -> TerrainConfig {
+    TerrainConfig { scale_factor: 150.0, coarse_levels: 5, ..crate::endless::config() }
+}
 
 /// Lower ground of another seed, which is rougher.
 fn target() -> TerrainConfig {
-    TerrainConfig { scale_factor: 150.0, roughness: 0.85, seed: "the other end".to_owned(), ..config() }
+    TerrainConfig { scale_factor: 75.0, roughness: 0.85, seed: "the other end".to_owned(), ..config() }
 }
 
 fn limits() -> EndlessLimits {
-    EndlessLimits {
-        nodes_per_frame: 64,
-        view_distance: Some(2_500.0),
-        node_size: 33,
-        finer_normals: false,
-        ..EndlessLimits::default()
-    }
+    EndlessLimits { view_distance: Some(800.0), finer_normals: false, ..small_nodes() }
 }
 
 fn source(time: f64) -> TerrainSource {
@@ -42,12 +41,12 @@ fn truth(time: f64, x: f64, z: f64) -> f64 {
 
 /// What a camera sees of terrain, at a time to which it is set after it was added.
 fn seen(source: &TerrainSource, time: Option<f64>) -> image::RgbaImage {
-    let mut world = World::of(source, [160, 90]);
+    let mut world = World::of(source, [96, 54]);
     if let Some(time) = time {
         world.scene.morph_terrain(world.land, TerrainMorph { time }).expect("a target");
     }
-    let (eye, at) = ([40.0, 420.0, -700.0], [42.0, 380.0, -740.0]);
-    let camera = Camera::looking_at_world(eye, at, 0.9, [0.5, 12_000.0], [160, 90]);
+    let (eye, at) = ([40.0, 200.0, -700.0], [42.0, 160.0, -740.0]);
+    let camera = Camera::looking_at_world(eye, at, 0.9, [0.5, 12_000.0], [96, 54]);
     world.view.set(camera).expect("valid");
     world.settle();
     picture(&mut world)
@@ -84,7 +83,7 @@ fn at_both_ends_it_is_the_terrain_of_one_recipe() {
 /// because of the time.
 #[test]
 fn every_time_keeps_the_promise() {
-    let mut world = World::of(&source(0.0), [160, 90]);
+    let mut world = World::of(&source(0.0), [96, 54]);
     let camera = world.above([1.0e6, 40.0], 60.0);
     world.view.set(camera).expect("valid");
     world.settle();
@@ -152,7 +151,7 @@ fn targets_that_do_not_fit_are_refused() {
         }
     };
     let of = TerrainRecipe::new;
-    assert_eq!(refused(of(TerrainConfig { coarse_levels: 5, ..target() })), "target.coarse_levels");
+    assert_eq!(refused(of(TerrainConfig { coarse_levels: 4, ..target() })), "target.coarse_levels");
     assert_eq!(refused(of(TerrainConfig { patch_size: 33, ..target() })), "target.patch_size");
     let despike = Some(Despike { threshold: 1.0 });
     assert_eq!(refused(TerrainRecipe { despike, ..of(target()) }), "target.recipe");

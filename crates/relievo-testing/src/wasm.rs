@@ -11,6 +11,9 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// The profile of a page that is served, which has to be small.
 pub const SMALL: &str = "web";
 
+/// The profile of a program that is run once, without optimisation.
+pub const QUICK: &str = "browser";
+
 /// What compiles for browsers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Toolchain {

@@ -8,7 +8,7 @@ use relievo::render::{Layer, Renderer, TargetFormat};
 use relievo::scene::{Camera, ObjectId, Quality, Scene, TerrainSource, View};
 
 use super::{Eye, SIZE, bound, shown};
-use crate::endless::{between, config};
+use crate::endless::{between, config, small_nodes};
 use crate::frame::device;
 use crate::raw::Raw;
 
@@ -57,7 +57,9 @@ impl Stage {
         let (gpu, config) = (device(), config());
         let mut scene = Scene::new(&gpu).expect("compiled");
         scene.keep_motion_history(true).expect("kept");
-        let land = scene.add_terrain(&TerrainSource::endless(config.clone())).expect("added");
+        let land = scene
+            .add_terrain(&TerrainSource::endless(config.clone()).with_limits(small_nodes()))
+            .expect("added");
         let view = || scene.view(Quality::pixels(4.0)).expect("a view");
         let mut views = [view(), view()];
         views[1].set(from_above(config.terrain_scale as f32)).expect("a camera");

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use crate::harness::{Difference, Tolerance, browser, gpu};
 use crate::picture::{SIZE, World, mistakes};
-use relievo_testing::wasm::Program;
+use relievo_testing::wasm::{Program, QUICK};
 
 /// The results of one page load, which all tests of this file and of `delivery.rs` examine.
 pub fn said() -> &'static Value {
@@ -24,7 +24,7 @@ pub fn said() -> &'static Value {
         let start = Instant::now();
         let target = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("web");
         let program =
-            Program { package: "relievo-web-scene", library: "scene", profile: "dev", target: &target };
+            Program { package: "relievo-web-scene", library: "scene", profile: QUICK, target: &target };
         program.build(folder.path()).expect("the scene compiles for browsers");
         let built = start.elapsed().as_secs_f32();
         let read = |name: &str| std::fs::read(folder.path().join(name)).expect("written");

@@ -97,7 +97,7 @@ impl World {
     pub async fn endless(gpu: &Gpu) -> Result<Self, Error> {
         let mut scene = Scene::new_async(gpu).await?;
         let config = TerrainConfig { coarse_levels: 5, ..TerrainConfig::new(65, 200.0, "browser")? };
-        let limits = EndlessLimits { capacity: 512, ..EndlessLimits::default() };
+        let limits = EndlessLimits { capacity: 512, node_size: 33, ..EndlessLimits::default() };
         let land = scene.add_terrain_async(&TerrainSource::endless(config).with_limits(limits)).await?;
         let at = [1.0e6, -2.0e6];
         let height = scene.ground(land, at[0], at[1])?.map_or(0.0, |point| point.height);
