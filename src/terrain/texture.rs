@@ -63,8 +63,9 @@ impl TerrainTexture {
     }
 
     fn from_texels(texels: Vec<u8>) -> Self {
+        let channel: [f32; 256] = std::array::from_fn(|byte| srgb::linear(byte as u8));
         let linear = |texel: &[u8]| {
-            let [red, green, blue] = [texel[0], texel[1], texel[2]].map(srgb::linear);
+            let [red, green, blue] = [0, 1, 2].map(|at| channel[usize::from(texel[at])]);
             [red, green, blue, f32::from(texel[3]) / 255.0]
         };
         let mut level: Vec<[f32; 4]> = texels.chunks_exact(4).map(linear).collect();

@@ -21,14 +21,22 @@ pub fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// The two lattice points around a coordinate along one edge of the tile, and the coordinate between them, 0 to 1.
+fn corners(at: f32, period: u32) -> ([u32; 2], f32) {
+    let scaled = at * period as f32;
+    // `f32::floor` is a call on processors without SSE 4.1.
+    let towards_zero = scaled as i32;
+    let cell = towards_zero - i32::from(scaled < towards_zero as f32);
+    let first = cell.rem_euclid(period as i32) as u32;
+    ([first, if first + 1 == period { 0 } else { first + 1 }], scaled - cell as f32)
+}
+
 /// Gradient noise, about −1 to 1. `periods` is the number of lattice cells along the tile's edges.
 pub fn gradient(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
-    let (x, y) = (u * periods[0] as f32, v * periods[1] as f32);
-    let (cell_x, cell_y) = (x.floor(), y.floor());
-    let (s, t) = (x - cell_x, y - cell_y);
-    let wrapped = |cell: f32, step: i32, period: u32| (cell as i32 + step).rem_euclid(period as i32) as u32;
-    let corner = |dx: i32, dy: i32| {
-        let word = word(key, [wrapped(cell_x, dx, periods[0]), wrapped(cell_y, dy, periods[1])]);
+    let [(columns, s), (rows, t)] =
+        [(u, periods[0]), (v, periods[1])].map(|(at, period)| corners(at, period));
+    let corner = |dx: usize, dy: usize| {
+        let word = word(key, [columns[dx], rows[dy]]);
         let (s, t) = (s - dx as f32, t - dy as f32);
         // One of eight gradient directions, of about equal length.
         let [long, short] = if word & 4 == 0 { [s, t] } else { [t, s] };

@@ -22,7 +22,7 @@ fn files(name: &str, scene: Vec<u8>) -> Memory {
 
 /// A viewer with the crowd, in a window that is high enough for all sections.
 pub fn crowd() -> Driver {
-    let mut driver = Driver::new([580, 1400]);
+    let mut driver = Driver::high([580, 1400]);
     driver.viewer.open("crowd.json", Arc::new(files("crowd.json", CROWD.as_bytes().to_vec())));
     driver.settle();
     assert_eq!(driver.viewer.notice(), None);
@@ -313,7 +313,6 @@ fn the_camera_follows_pointer_and_keys() {
 
     // A double click looks at what is there.
     driver.click("orbit");
-    let rect = driver.rect("picture");
     let picture = driver.picture();
     let background = *picture.get_pixel(2, 2);
     let is_inside =
@@ -322,7 +321,7 @@ fn the_camera_follows_pointer_and_keys() {
     let inner = all
         .filter(|(x, y)| (20..picture.width() - 20).contains(x) && (60..picture.height() - 60).contains(y));
     let (x, y) = inner.into_iter().find(|(x, y)| is_inside(*x, *y)).expect("a creature");
-    let spot = rect.min + vec2(x as f32 + 0.5, y as f32 + 0.5);
+    let spot = driver.point(x, y);
     let focus = eye(&driver).focus;
     // Long after the last click.
     driver.frames(30);
@@ -406,7 +405,7 @@ fn pictures_scenes_and_commands_are_handed_out() {
     );
 
     // The scene that was saved shows the same picture.
-    let mut other = Driver::new([580, 1400]);
+    let mut other = Driver::high([580, 1400]);
     other.viewer.open("crowd-view.json", Arc::new(files("crowd-view.json", bytes)));
     other.settle();
     other.click("Pause");

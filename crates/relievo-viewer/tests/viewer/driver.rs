@@ -57,6 +57,11 @@ impl Driver {
         Self::with(gpu(), size, 1.0, settings())
     }
 
+    /// The same with half a pixel a point, for windows that are high enough for all sections.
+    pub fn high(size: [u32; 2]) -> Self {
+        Self::with(gpu(), size, 0.5, settings())
+    }
+
     pub fn with(gpu: Gpu, size: [u32; 2], scale: f32, settings: Settings) -> Self {
         let pixels = size.map(|edge| (edge as f32 * scale) as u32);
         let viewer = Viewer::new(gpu.clone(), FORMAT, settings);
@@ -285,6 +290,11 @@ impl Driver {
         let [x, y, width, height] =
             [rect.left(), rect.top(), rect.width(), rect.height()].map(|edge| edge as u32);
         image::imageops::crop_imm(&self.window(), x, y, width, height).to_image()
+    }
+
+    /// The point of the window in the middle of a pixel of the picture.
+    pub fn point(&self, x: u32, y: u32) -> Pos2 {
+        self.rect("picture").min + vec2(x as f32 + 0.5, y as f32 + 0.5) / self.scale
     }
 
     /// Saves the window for whoever wants to look at it.

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{Event, Key, PointerButton, TouchPhase, pos2, vec2};
+use egui::{Event, Key, PointerButton, TouchPhase, vec2};
 use relievo_viewer::{Drag, Memory, Request, Theme};
 
 use crate::controls::crowd;
@@ -272,16 +272,15 @@ fn gates_have_their_parts() {
     driver.frames(10);
     let first = driver.shown().chosen.as_ref().expect("chosen").instance;
     driver.click("Pause");
-    let rect = driver.rect("picture");
     let picture = driver.picture();
     let background = *picture.get_pixel(2, 2);
     let mut others = Vec::new();
     for (x, y) in (10..picture.width() - 10)
-        .step_by(12)
-        .flat_map(|x| (60..picture.height() - 60).step_by(12).map(move |y| (x, y)))
+        .step_by(6)
+        .flat_map(|x| (40..picture.height() - 40).step_by(6).map(move |y| (x, y)))
     {
         if *picture.get_pixel(x, y) != background && others.is_empty() {
-            driver.click_at(pos2(rect.left() + x as f32, rect.top() + y as f32));
+            driver.click_at(driver.point(x, y));
             if let Some(chosen) = driver.shown().chosen.as_ref().filter(|chosen| chosen.instance != first) {
                 others.push(chosen.instance);
             }
@@ -305,7 +304,7 @@ fn gates_have_their_parts() {
 /// Controls that are shown change no value: here values have many digits, or lie beyond the ends of sliders.
 #[test]
 fn sections_that_open_change_nothing() {
-    let mut driver = Driver::new([640, 2400]);
+    let mut driver = Driver::high([640, 2400]);
     let scene = r#"{
       "characters": [{ "file": "creature.rlv", "instances": [{ "at": [0, 0, 0] }],
         "gate": { "mode": "skip-period", "range": [1.23456, 31.23456], "period": 0.123456 } }],
