@@ -181,6 +181,10 @@ fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
         height(&config, &Features::default(), Window { patch: [32, -32], apron: 0 }.region(&config));
     assert!(last[last.len() - points..] == expected);
     assert!(batch.set(&gpu, &[[0, 0]; 34], &Features::default()).is_err(), "34 patches do not fit");
+    let mistaken = TerrainConfig { patch_size: 0, ..config };
+    let error =
+        HeightBatch::new(&gpu, &pass, &mistaken, Windows { count, apron: 0 }, 0).expect_err("refused");
+    assert!(error.to_string().contains("patch_size = 0"), "{error}");
 }
 
 /// Buffers, bind groups and pipelines that somebody holds; live pieces of device memory, which recorded work holds too.

@@ -86,7 +86,7 @@ impl LevelPass {
         // One level is subdivided at least: the output is no base lattice.
         InputError::check_within("coarser", coarser, 0..=config.levels().saturating_sub(1))?;
         let widths = level_widths(config, width, coarser);
-        output.check_holds("output", points(width, count))?;
+        output.check_holds("output", regions.points())?;
         scratch.check(config, &widths, count)?;
         let grids: Vec<u32> = widths[1..].iter().map(|width| width + 2 * (rim(config) - 1)).collect();
         let capacity = if self.with_features { feature_capacity.max(1) } else { 0 };

@@ -20,7 +20,7 @@ use crate::endless::{
 };
 use crate::harness::{Difference, gpu};
 
-/// Steep mountains, of which a kilometre is seen.
+/// Steep mountains, whose coarsest nodes are a kilometre wide.
 fn config() -> TerrainConfig {
     TerrainConfig { scale_factor: 150.0, coarse_levels: 4, ..crate::endless::config() }
 }

@@ -9,7 +9,7 @@ use relievo::scene::{
 use crate::endless::{ROUNDING, World, between, holes, largest, offsets, picture, small_nodes, some};
 use crate::harness::{Difference, gpu};
 
-/// Ground of which two kilometres are seen.
+/// Ground whose coarsest nodes are two kilometres wide.
 fn config() -> TerrainConfig {
     TerrainConfig { scale_factor: 150.0, coarse_levels: 5, ..crate::endless::config() }
 }

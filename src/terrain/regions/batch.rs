@@ -30,6 +30,7 @@ impl HeightBatch {
         feature_capacity: usize,
     ) -> Result<Self, Error> {
         let Windows { count, apron } = windows;
+        config.validate()?;
         Window { patch: [0, 0], apron }.validate(config)?;
         let largest = Fields::most(gpu, config.patch_size + 2 * apron) as u32;
         let parts = count.div_ceil(largest).max(1);
