@@ -227,7 +227,7 @@ impl ShaderBindings<'_> {
         };
         let (name, constant) = (&shader.name, shader.constant());
         let target = if self.is_kernel() { "kernel: &Kernel" } else { "layouts: &Layouts" };
-        let binds = target.split(':').next().unwrap_or_default();
+        let binds = if self.is_kernel() { "kernel.layouts" } else { "layouts" };
         let bound =
             format!("{binds}.bind_group(gpu, &shaders::{constant}, {group}, &[\n{resources}        ])");
         let (errors, error, body) = match is_checked {

@@ -68,6 +68,21 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
+def reached(text: bytes) -> list[bytes]:
+    """The functions of a shader that its entry points call. A fault in any other is equivalent."""
+    functions = {match[1]: match[0] for match in FUNCTION.finditer(text)}
+    calls = {name: set(re.findall(rb"\b(\w+)\(", body)) for name, body in functions.items()}
+    left = [name for name, body in functions.items() if re.search(rb"@(?:compute|vertex|fragment)\b", body)]
+    found = set()
+    while left:
+        name = left.pop()
+        if name in functions and name not in found:
+            found.add(name)
+            left += calls[name] - {name}
+    # A module for others' shaders has no entry point.
+    return [body for name, body in functions.items() if name in found or not found]
+
+
 def shaders(program: bytes) -> dict[str, bytes]:
     """The flat WGSL of each shader, by name: what follows its first line, function by function."""
     texts = {}
@@ -183,7 +198,7 @@ def main() -> None:
     def drawn() -> Fault:
         while True:
             name = names[len(tried) % len(names)] if chosen.only else draw.choice(names)
-            faults = faults_of(function := draw.choice([match[0] for match in FUNCTION.finditer(texts[name])]))
+            faults = faults_of(function := draw.choice(reached(texts[name])))
             if faults and (fault := Fault(name, function, *draw.choice(faults))).planted not in tried:
                 tried.add(fault.planted)
                 return fault

@@ -18,8 +18,8 @@ use relievo::ops::animation::local_to_model::LocalToModelPass;
 use relievo::ops::animation::sample::SamplePass;
 use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::features::Features;
+use relievo::ops::terrain::field::region;
 use relievo::ops::terrain::fields::Fields;
-use relievo::ops::terrain::height::reference::height;
 use relievo::ops::terrain::regions::{HeightBatch, RegionPass};
 use relievo::ops::terrain::window::{Window, Windows};
 use relievo_lab::harness::{TimedBy, Timer};
@@ -44,7 +44,7 @@ fn heights_equal_the_reference(gpu: &Gpu) {
     batch.set(gpu, &[[3, 4], [-1, 0]], &Features::default()).expect("set");
     gpu.run("test", |encoder| batch.record(encoder)).expect("run");
     let actual = batch.fields()[0].heights.read_blocking(gpu).expect("read");
-    let reference = |patch| height(&config, &Features::default(), Window { patch, apron: 0 }.region(&config));
+    let reference = |patch| region(&config, &Features::default(), Window { patch, apron: 0 }.region(&config));
     assert_eq!(actual, [reference([3, 4]), reference([-1, 0])].concat());
 }
 
@@ -148,7 +148,7 @@ fn a_window_beyond_128_mib_is_made_where_the_adapter_can_and_says_what_helps_els
                 let actual = batch.fields()[0].heights.read_blocking(&gpu).expect("read");
                 assert!(
                     actual
-                        == height(
+                        == region(
                             &config,
                             &Features::default(),
                             Window { patch: [0, 0], apron }.region(&config)
@@ -169,16 +169,18 @@ fn large_batches_are_split_and_memory_stays_below_two_words_a_point() {
     let config = TerrainConfig::new(1025, 20.0, "split").expect("valid");
     let pass = RegionPass::new(&gpu, &config, None).expect("compiled");
     let count = 33_u32;
+    let before = gpu.memory().now();
     let batch = HeightBatch::new(&gpu, &pass, &config, Windows { count, apron: 0 }, 0).expect("allocated");
     assert!(batch.fields().len() == 2, "33 patches of 4.2 MB exceed one binding of 128 MiB");
     let patches: Vec<_> = (0..count as i32).map(|i| [i, -i]).collect();
     batch.set(&gpu, &patches, &Features::default()).expect("set");
     gpu.run("test", |encoder| batch.record(encoder)).expect("run");
     let points = 1025_usize * 1025;
-    assert!(batch.bytes() <= 8 * points as u64 * u64::from(count), "{} bytes", batch.bytes());
+    let bytes = gpu.memory().now() - before;
+    assert!(bytes <= 8 * points as u64 * u64::from(count), "{bytes} bytes");
     let last = batch.fields()[1].heights.read_blocking(&gpu).expect("read");
     let expected =
-        height(&config, &Features::default(), Window { patch: [32, -32], apron: 0 }.region(&config));
+        region(&config, &Features::default(), Window { patch: [32, -32], apron: 0 }.region(&config));
     assert!(last[last.len() - points..] == expected);
     assert!(batch.set(&gpu, &[[0, 0]; 34], &Features::default()).is_err(), "34 patches do not fit");
     let mistaken = TerrainConfig { patch_size: 0, ..config };

@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 use relievo::asset::model::Model;
 use relievo::ops::terrain::config::TerrainConfig;
 use relievo::ops::terrain::features::Features;
-use relievo::ops::terrain::height::reference::height;
+use relievo::ops::terrain::field::region;
 use relievo::ops::terrain::window::Window;
 
 #[path = "../levels/helmet.rs"]
@@ -135,7 +135,7 @@ pub fn generated(triangles: usize) -> Result<Mesh, Box<dyn Error>> {
     let cells = ((triangles as f64 / 2.0).sqrt().round() as usize).max(2);
     let size = cells.next_power_of_two() as u32 + 1;
     let config = TerrainConfig::new(size, 40.0, "simplify")?;
-    let heights = height(&config, &Features::default(), Window { patch: [0, 0], apron: 0 }.region(&config));
+    let heights = region(&config, &Features::default(), Window { patch: [0, 0], apron: 0 }.region(&config));
     let scale = config.scale_factor as f32 / 65_536.0;
     Ok(grid("terrain", cells, |column, row| heights[row * size as usize + column] as f32 * scale))
 }

@@ -8,7 +8,7 @@ use super::{Gpu, GpuError, Program};
 pub struct Kernel {
     shader: &'static Shader,
     pub(super) pipeline: wgpu::ComputePipeline,
-    layouts: Layouts,
+    pub(crate) layouts: Layouts,
 }
 
 /// A bind group of a kernel.
@@ -49,20 +49,6 @@ impl Kernel {
             })
         })?;
         Ok(Self { shader, pipeline, layouts })
-    }
-
-    /// Creates a bind group from resources and their binding numbers, as `gpu::bindings` lists them.
-    ///
-    /// # Errors
-    /// The errors of [`Layouts::bind_group`].
-    pub(crate) fn bind_group(
-        &self,
-        gpu: &Gpu,
-        shader: &'static Shader,
-        group: u32,
-        resources: &[(u32, wgpu::BindingResource<'_>)],
-    ) -> Result<Group, GpuError> {
-        self.layouts.bind_group(gpu, shader, group, resources)
     }
 
     /// Workgroup counts for `invocations` threads along x. If x alone cannot hold all workgroups, they are spread over x and y.

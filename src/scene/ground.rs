@@ -102,15 +102,16 @@ impl Scene {
 
     /// Replaces the heights that are injected into an endless terrain, such as those of roads and valleys, from the next frame on. The
     /// nodes that they change are made again: all at once if they are at most half of [`EndlessLimits::nodes_per_frame`], and otherwise
-    /// coarsest first. [`Scene::ground`] answers for the new heights at once, [`Scene::pick`] from the next frame on.
+    /// coarsest first. [`Scene::ground`] answers for the new heights at once, [`Scene::pick`] from the next frame on. They lie on the
+    /// elevation map, if there is one.
     ///
     /// The call takes some 20 µs for each of the heights on the host. The first heights of a terrain compile a pipeline.
     ///
     /// [`EndlessLimits::nodes_per_frame`]: crate::scene::EndlessLimits::nodes_per_frame
     ///
     /// # Errors
-    /// [`InputError`] for an object that is not in this scene or is not endless terrain, for terrain with an elevation map or of noise,
-    /// and for heights out of bounds.
+    /// [`InputError`] for an object that is not in this scene or is not endless terrain, for terrain of noise, and for heights out of
+    /// bounds.
     ///
     /// # Examples
     ///

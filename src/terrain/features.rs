@@ -162,6 +162,14 @@ impl Features {
         self.worlds.get(&[0, 0]).into_iter().flatten()
     }
 
+    /// The injected points of `seamless` terrain that `is_own` chooses by column and row in world coordinates, and all others.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn divided(&self, is_own: impl Fn([i64; 2]) -> bool) -> [Self; 2] {
+        let points = self.points().map(|(at, height)| (*at, *height));
+        let (own, other) = points.partition(|((row, column), _)| is_own([*column, *row]));
+        [own, other].map(|points| Self::of_points(self.mode, points))
+    }
+
     /// Whether there are no injected points.
     pub fn is_empty(&self) -> bool {
         self.worlds.values().all(BTreeMap::is_empty)

@@ -102,10 +102,10 @@ pub(crate) fn region_of(
 ) -> Vec<i32> {
     match (config.generator, config.interpolation) {
         (HeightGenerator::DiamondSquare, HeightInterpolation::Linear) => {
-            height::reference::height_of(config, features, given, region)
+            height::reference::height(config, features, given, region)
         }
         (HeightGenerator::DiamondSquare, HeightInterpolation::Smooth) => {
-            smooth::reference::smooth_of(config, features, given, region)
+            smooth::reference::smooth(config, features, given, region)
         }
         _ => {
             let mut heights = noise::reference::noise(config, region);
@@ -118,12 +118,8 @@ pub(crate) fn region_of(
 }
 
 /// Heights of a region of `seamless` terrain at its samples' own resolution, after the recipe's erosion, which moves heights by at most
-/// `limit`. The region must be valid with [`Recipe::apron`] samples around it. The recipe must have no despiking.
-pub fn eroded_region(recipe: &Recipe, limit: ErosionLimit, own: Region) -> Vec<i32> {
-    eroded_region_of(recipe, limit, None, own)
-}
-
-/// The same as [`eroded_region`], with given heights before erosion, as for [`region_of`].
+/// `limit`, with given heights before erosion as for [`region_of`]. The region must be valid with [`Recipe::apron`] samples around it.
+/// The recipe must have no despiking.
 pub(crate) fn eroded_region_of(
     recipe: &Recipe,
     limit: ErosionLimit,

@@ -137,7 +137,7 @@ impl Generator {
         let buffers = HeightBuffers { output: &fields.heights, scratch: &scratch };
         let job = self.regions.prepare(gpu, config, Windows { count, apron }, capacity, buffers)?;
         job.set(gpu, patches, &self.recipe.features)?;
-        gpu.run_async(self.regions.label(), |encoder| job.record(encoder)).await?;
+        gpu.run_async("terrain heights", |encoder| job.record(encoder)).await?;
         Ok(fields)
     }
 
@@ -247,7 +247,7 @@ impl Generator {
         let points = injected.iter().map(Vec::len).sum::<usize>();
         let capacity = if self.recipe.features.is_empty() { 0 } else { points.max(1) };
         let index = FeatureIndex::new(gpu, &[width], injected.len() as u32, capacity)?;
-        index.write(gpu, injected.len() as u32, |_, window| {
+        index.write(&mut &*gpu, injected.len() as u32, |_, window| {
             // The index counts from one point before the window, hence + 1. Despiking reads no heights, so they are 0.
             injected[window as usize].iter().map(|(column, row)| (column + 1, row + 1, 0)).collect()
         })?;

@@ -34,33 +34,36 @@ pub(crate) struct FeatureOffsets {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Injected {
     height: i32,
-    /// Its distance from the height that would be there without it.
+    /// Its distance from the height that would be generated without it.
     offset: u32,
+    /// Whether the height that would be there follows from an elevation map.
+    is_near_map: bool,
 }
 
 impl FeatureOffsets {
-    /// Finds the offsets of all injected heights. The configuration must be valid.
-    pub fn new(config: &TerrainConfig, features: &Features) -> Self {
+    /// Finds the offsets of all injected heights. The configuration must be valid. `is_near_map` tells of a column and row of samples
+    /// whether heights follow from an elevation map.
+    pub fn new(
+        config: &TerrainConfig,
+        features: &Features,
+        is_near_map: impl Fn([i64; 2]) -> bool + Sync,
+    ) -> Self {
         let mut lattices = vec![BTreeMap::new(); config.levels() as usize + 1];
         let spacing = config.sample_spacing();
         for ((y, x), height) in features.points() {
             let (row, column) = (y / spacing, x / spacing);
             let lattice = (row | column).trailing_zeros().min(config.levels());
-            lattices[lattice as usize].insert((row, column), Injected { height: *height, offset: 0 });
+            let injected = Injected { height: *height, offset: 0, is_near_map: is_near_map([column, row]) };
+            lattices[lattice as usize].insert((row, column), injected);
         }
         let own = Self { lattices, mode: features.mode };
         let with_offsets = |lattice: usize| {
             let points: Vec<_> = own.lattices[lattice].iter().collect();
-            let made = |(at, injected): &(&(i64, i64), &Injected)| {
-                (
-                    **at,
-                    Injected {
-                        offset: own.offset(config, lattice as u32, **at, injected.height),
-                        ..**injected
-                    },
-                )
+            let offset = |(at, injected): &(&_, &Injected)| {
+                let offset = own.offset(config, lattice as u32, **at, injected.height);
+                (**at, Injected { offset, ..**injected })
             };
-            points.par_iter().map(made).collect()
+            points.par_iter().map(offset).collect()
         };
         Self { lattices: (0..own.lattices.len()).map(with_offsets).collect(), mode: features.mode }
     }
@@ -100,21 +103,26 @@ impl FeatureOffsets {
     }
 
     /// Bound of what the injected heights change that a region lacks because they are on finer lattices, in 1/65536 height units.
-    /// The region's rim of at least three samples is not drawn.
-    pub fn bound(&self, config: &TerrainConfig, region: Region) -> i64 {
+    /// The region's rim of at least three samples is not drawn. Without these heights, the region's would be from `low` to `high`.
+    pub fn bound(&self, config: &TerrainConfig, region: Region, [low, high]: [i64; 2]) -> i64 {
         let [columns, rows] = region
             .first
             .map(|first| first << region.coarser..=(first + i64::from(region.width) - 1) << region.coarser);
         let lattices = self.lattices.iter().take(region.coarser as usize).enumerate();
         let bounds = lattices.map(|(lattice, points)| {
             let points = points.range((*rows.start(), i64::MIN)..=(*rows.end(), i64::MAX));
-            let (mut center, mut edge) = (0_u32, 0_u32);
+            let (mut center, mut edge) = (0_i64, 0_i64);
             for ((row, column), injected) in points.filter(|((_, column), _)| columns.contains(column)) {
                 let is_center = (row & column) >> lattice & 1 == 1;
                 let largest = if is_center { &mut center } else { &mut edge };
-                *largest = injected.offset.max(*largest);
+                let height = i64::from(injected.height);
+                let offset = match self.mode {
+                    FeatureMode::Keep if injected.is_near_map => (height - low).max(high - height),
+                    _ => injected.offset.into(),
+                };
+                *largest = offset.max(*largest);
             }
-            let [center, edge] = [center, edge].map(f64::from);
+            let [center, edge] = [center, edge].map(|offset| offset as f64);
             if center + edge == 0.0 {
                 return 0;
             }
@@ -125,6 +133,15 @@ impl FeatureOffsets {
             effect.ceil() as i64 + ROUNDING * (region.coarser as i64)
         });
         bounds.sum()
+    }
+
+    /// Bound of what all injected heights that a region has, or that it follows from, change in it.
+    pub fn influence(&self, region: Region) -> i64 {
+        let lattices = (0..).zip(&self.lattices).skip(region.coarser as usize);
+        let points = lattices.flat_map(|(lattice, points)| {
+            points.iter().map(move |(at, injected)| ChangedPoint::on_lattice(lattice, *at, injected.offset))
+        });
+        ChangedPoint::bound(&points.collect::<Vec<_>>(), region)
     }
 
     /// The places at which two sets of injected heights differ.
@@ -139,11 +156,9 @@ impl FeatureOffsets {
                 [one, two].iter().filter_map(|points| points.get(at)).map(|point| point.offset).max()
             };
             let places = one.keys().chain(two.keys().filter(|at| !one.contains_key(at)));
-            changed.extend(places.filter(|at| differs(at)).map(|at| ChangedPoint {
-                at: [at.1, at.0],
-                lattice,
-                offset: offset(at).unwrap_or(0),
-            }));
+            let changed_at =
+                |at: &(i64, i64)| ChangedPoint::on_lattice(lattice, *at, offset(at).unwrap_or(0));
+            changed.extend(places.filter(|at| differs(at)).map(changed_at));
         }
         changed
     }
@@ -153,20 +168,27 @@ impl FeatureOffsets {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ChangedPoint {
     /// Column and row of the sample.
-    at: [i64; 2],
-    /// Number of levels by which the coarsest lattice that has the sample is coarser than the terrain.
-    lattice: u32,
+    pub at: [i64; 2],
+    /// The coarsest regions that change are this many levels coarser than the terrain.
+    pub coarsest: u32,
+    /// Distance in samples over which heights change.
+    pub reach: i64,
     /// The larger distance of the old and the new height from what would be there without them.
-    offset: u32,
+    pub offset: u32,
 }
 
 impl ChangedPoint {
+    /// A point by the coarsest lattice that has it, and its row and column.
+    fn on_lattice(lattice: u32, (row, column): (i64, i64), offset: u32) -> Self {
+        Self { at: [column, row], coarsest: lattice, reach: REACH << lattice, offset }
+    }
+
     /// How far changed points may raise or lower heights of a region, in 1/65536 height units: for each lattice, twice the effect
     /// of its largest offset, for the old and the new heights.
     pub fn bound(changed: &[Self], region: Region) -> i64 {
         let mut largest = BTreeMap::new();
         for point in changed.iter().filter(|point| point.changes(region)) {
-            let most: &mut u32 = largest.entry(point.lattice).or_default();
+            let most: &mut u32 = largest.entry(point.coarsest).or_default();
             *most = point.offset.max(*most);
         }
         largest.values().map(|offset| 4 * i64::from(*offset)).sum()
@@ -174,12 +196,11 @@ impl ChangedPoint {
 
     /// Whether heights of a region change.
     pub fn changes(&self, region: Region) -> bool {
-        let reach = REACH << self.lattice;
-        region.coarser <= self.lattice
+        region.coarser <= self.coarsest
             && (0..2).all(|axis| {
                 let first = region.first[axis] << region.coarser;
                 let last = (region.first[axis] + i64::from(region.width) - 1) << region.coarser;
-                (first - reach..=last + reach).contains(&self.at[axis])
+                (first - self.reach..=last + self.reach).contains(&self.at[axis])
             })
     }
 }
@@ -235,11 +256,11 @@ mod tests {
                 };
                 let files: Vec<FeatureFile> = files.iter().map(file).collect();
                 let features = Features::new(&config, &files, mode).expect("valid");
-                let offsets = FeatureOffsets::new(&config, &features);
+                let offsets = FeatureOffsets::new(&config, &features, |_| false);
                 let (bent, largest) = exact(&config, |of| region(&config, &features, of), coarser, first);
                 let without = remainder(&config, coarser, bent);
                 let around = Region { first: first.map(|at| at - 4), width: CELLS as u32 + 9, coarser };
-                let bound = without + offsets.bound(&config, around);
+                let bound = without + offsets.bound(&config, around, [0, 0]);
                 assert!(largest <= bound as f64, "{interpolation:?} {mode:?} {node}: {largest} > {bound}");
                 beyond += usize::from(largest > without as f64);
                 loose.push(bound as f64 / largest);

@@ -22,6 +22,41 @@ pub(crate) struct LevelPass {
     pub with_features: bool,
 }
 
+/// The pass of a kernel that computes a level in one dispatch, for a distribution of random offsets and a mode of injection.
+macro_rules! level_pass {
+    ($name:ident, $label:literal) => {
+        /// # Errors
+        /// Shader compilation errors of the driver.
+        pub(crate) fn pass(
+            gpu: &$crate::gpu::Gpu,
+            offset: $crate::terrain::config::Offset,
+            features: Option<$crate::terrain::fixed::FeatureMode>,
+        ) -> Result<$crate::terrain::levels::LevelPass, $crate::gpu::GpuError> {
+            use $crate::gpu::bindings::terrain::$name as bindings;
+            use $crate::terrain::levels::{LevelBuffers, LevelPass, LevelStage, LevelThreads};
+            let constants = bindings::Constants {
+                distribution: offset.code(),
+                features: $crate::terrain::fixed::FeatureMode::code_of(features),
+            };
+            let stages = vec![LevelStage {
+                kernel: bindings::kernel(gpu, &constants)?,
+                threads: LevelThreads::Points,
+            }];
+            let bind = |gpu: &_, kernel: &_, buffers: LevelBuffers<'_>| {
+                let LevelBuffers { level, origins, coarse, fine, features, .. } = buffers;
+                let (origins, coarse, fine) = (origins.slice(), coarse.slice(), fine.slice());
+                let (feature_words, feature_heights) = (features.words(), features.heights());
+                let injected = bindings::Group1 { feature_words, feature_heights };
+                let group = bindings::Group { level, origins, coarse, fine };
+                Ok(vec![group.bind(gpu, kernel)?, injected.bind(gpu, kernel)?])
+            };
+            Ok(LevelPass { label: $label, stages, bind, with_features: features.is_some() })
+        }
+    };
+}
+
+pub(crate) use level_pass;
+
 /// A dispatch of the kernel.
 #[derive(Debug, Clone)]
 pub(crate) struct LevelStage {
@@ -257,11 +292,6 @@ impl HeightScratch {
         let all = self.buffers.iter().zip(needed.levels).chain([(&self.centers, needed.centers)]);
         all.into_iter().try_for_each(|(buffer, needed)| buffer.check_holds("scratch", needed))
     }
-
-    /// Memory of the scratch buffers on the device, in bytes.
-    pub fn bytes(&self) -> u64 {
-        self.buffers.iter().chain([&self.centers]).map(Buffer::bytes).sum()
-    }
 }
 
 /// A prepared generation of a batch of regions by levels of subdivision.
@@ -321,7 +351,7 @@ impl LevelJob {
         for (buffer, origins) in self.origins.iter().zip(&origins) {
             to.elements(buffer, 0, origins)?;
         }
-        self.features.write_to(to, regions.len() as u32, |level, window| {
+        self.features.write(to, regions.len() as u32, |level, window| {
             self.features_of(features, (level, origins[level][window as usize]), worlds[window as usize])
         })?;
         Ok(())
@@ -355,14 +385,9 @@ impl LevelJob {
 
     /// Number of features that regions need room for.
     pub fn feature_count(&self, regions: &[Region], features: &Features) -> usize {
-        let origins = self.origins_of(regions).into_iter().enumerate();
-        let needed = |(level, origins): (usize, Vec<[i32; 2]>)| {
-            origins
-                .into_iter()
-                .map(|origin| self.features_of(features, (level, origin), [0, 0]).len())
-                .sum::<usize>()
-        };
-        origins.map(needed).sum()
+        let levels = self.origins_of(regions).into_iter().enumerate();
+        let all = levels.flat_map(|(level, origins)| origins.into_iter().map(move |origin| (level, origin)));
+        all.map(|at| self.features_of(features, at, [0, 0]).len()).sum()
     }
 
     /// Records the generation of all regions of the batch.

@@ -248,7 +248,7 @@ mod tests {
             let heights = |first: [i64; 2], width: u32, coarser: u32| {
                 let region = Region { first, width, coarser };
                 region.validate(&config).expect("inside");
-                made(&config, &Features::default(), region)
+                made(&config, &Features::default(), None, region)
             };
             for coarser in 0..config.levels() {
                 let (fine, coarse) = (heights([-14, 6], 21, coarser), heights([-7, 3], 11, coarser + 1));

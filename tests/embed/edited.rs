@@ -5,8 +5,8 @@ use relievo::ops::terrain::features::Features;
 use relievo::ops::terrain::field::region;
 use relievo::ops::terrain::window::Region;
 use relievo::scene::{
-    Camera, ElevationLayout, ElevationMap, ElevationTiles, FeatureFile, FeatureMode, HeightGenerator,
-    TerrainConfig, TerrainFeatures, TerrainRecipe, TerrainSource,
+    Camera, FeatureFile, FeatureMode, HeightGenerator, TerrainConfig, TerrainFeatures, TerrainRecipe,
+    TerrainSource,
 };
 
 use crate::endless::{Path, ROUNDING, World, flight, holes, picture, small_nodes};
@@ -30,7 +30,7 @@ pub fn features(config: &TerrainConfig, points: &[([i32; 2], f64)], mode: Featur
 }
 
 /// A valley whose floor is a road, and towers of one sample far and near. `height` is that of the road.
-fn road(height: f64) -> Vec<([i32; 2], f64)> {
+pub fn road(height: f64) -> Vec<([i32; 2], f64)> {
     let along = (-200..100).flat_map(|row: i32| {
         let middle = 20 + (f64::from(row) / 30.0).sin().mul_add(12.0, 0.0) as i32;
         (-3..=3).map(move |aside| ([middle + aside, row], height + 0.01 * f64::from(row)))
@@ -127,16 +127,6 @@ fn edits_are_there_at_once() {
 fn features_are_refused_where_nothing_spreads_them() {
     let config = config(HeightInterpolation::Linear);
     let own = features(&config, &[([3, 4], 5.0)], FeatureMode::Keep);
-    let layout = ElevationLayout { spacing: 1, first: [0, 0], size: [9, 9] };
-    let map = ElevationMap { layout, heights: vec![0.0; 81], margin: 0 };
-    let tiles = std::sync::Arc::new(ElevationTiles::new(&config, &map).expect("valid"));
-    let mut world =
-        World::of(&source(&config, TerrainFeatures::default()).with_elevation(tiles.clone()), [16, 9]);
-    let error = world.scene.set_terrain_features(world.land, &own).expect_err("a map").to_string();
-    assert!(error.contains("features.len = 1") && error.contains("map"), "{error}");
-    let both = source(&config, own.clone()).with_elevation(tiles);
-    let error = world.scene.add_terrain(&both).expect_err("a map").to_string();
-    assert!(error.contains("features.len = 1"), "{error}");
     let noise = TerrainConfig { generator: HeightGenerator::Fbm, ..config };
     let mut world = World::of(&source(&noise, TerrainFeatures::default()), [16, 9]);
     let error = world.scene.set_terrain_features(world.land, &own).expect_err("noise").to_string();

@@ -11,9 +11,11 @@ use relievo::ops::terrain::field::region;
 use relievo::ops::terrain::window::Region;
 use relievo::scene::{
     Camera, ElevationInfo, ElevationLayout, ElevationLoader, ElevationMap, ElevationSource, ElevationTile,
-    ElevationTiles, EndlessLimits, HeightGenerator, TerrainConfig, TerrainSource, TileNumber,
+    ElevationTiles, EndlessLimits, FeatureMode, HeightGenerator, TerrainConfig, TerrainFeatures,
+    TerrainRecipe, TerrainSource, TileNumber,
 };
 
+use crate::edited::{features, road};
 use crate::endless::{Path, ROUNDING, World, flight, holes, largest, offsets, picture, small_nodes, some};
 use crate::harness::Difference;
 
@@ -132,6 +134,104 @@ fn heights_between_samples_are_generated() {
             assert!(largest(&found) <= 1.0 + ROUNDING, "{}", largest(&found));
             assert_eq!(holes(&world, &camera, &drawn), 0);
         }
+    }
+}
+
+/// Heights that are injected beside a map: its samples have them where they lie on it, and all others are generated with them. A flight
+/// keeps its promise. Injected at run time, they give the same picture to the bit; without them again, the first picture.
+#[test]
+fn injected_heights_lie_on_the_map() {
+    use FeatureMode::{Additive, Keep};
+    let cases = [(1, Keep, 30.0, HeightInterpolation::Linear), (8, Keep, 60.0, HeightInterpolation::Smooth)];
+    for (spacing, mode, height, interpolation) in
+        cases.into_iter().chain([(1, Additive, -15.0, HeightInterpolation::Smooth)])
+    {
+        let config = TerrainConfig { interpolation, ..config() };
+        let (first, size) = if spacing == 1 { ([-170, -110], [420, 180]) } else { ([-20, -12], [60, 20]) };
+        let tiles = Arc::new(ElevationTiles::new(&config, &map(first, size, spacing, 4)).expect("valid"));
+        let is_of_map = |at: [i32; 2]| {
+            let inside = |axis: usize| {
+                let place = at[axis].div_euclid(spacing as i32) - first[axis];
+                at[axis] % spacing as i32 == 0 && (0..size[axis] as i32).contains(&place)
+            };
+            inside(0) && inside(1)
+        };
+        let points = road(height);
+        let (on_map, around): (Vec<_>, Vec<_>) = points.iter().copied().partition(|(at, _)| is_of_map(*at));
+        assert!(on_map.len() > 8 && around.len() > 500, "{} {}", on_map.len(), around.len());
+        let with = |points: &[([i32; 2], f64)]| {
+            let recipe = TerrainRecipe {
+                features: features(&config, points, mode),
+                ..TerrainRecipe::new(config.clone())
+            };
+            TerrainSource::from(recipe).with_limits(small_nodes()).with_elevation(tiles.clone())
+        };
+        let mut world = World::of(&with(&points), [160, 90]);
+        let [other, plain, apart] =
+            [&points[..], &[], &around].map(|points| World::of(&with(points), [16, 9]));
+        let ground = |world: &World, [x, z]: [f64; 2]| {
+            world.scene.ground(world.land, x, z).expect("valid").expect("ground").height
+        };
+        // With a map of the terrain's own spacing, heights on it are known without the generator.
+        let exact = |x: f64, z: f64| {
+            let sample = |at: [i64; 2]| {
+                let at = at.map(|at| at as i32);
+                let own = on_map.iter().find(|(place, _)| *place == at).map(|(_, height)| *height);
+                match (own, mode) {
+                    (Some(height), Keep) => height,
+                    (own, _) => ground(&apart, at.map(f64::from)) + own.unwrap_or(0.0),
+                }
+            };
+            let [column, row] = [x, z].map(|at| at.floor() as i64);
+            let [a, b, c, d] =
+                [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| sample([column + dx, row + dy]));
+            let [u, v] = [x - x.floor(), z - z.floor()];
+            if u + v <= 1.0 {
+                a + (b - a) * u + (c - a) * v
+            } else {
+                d + (c - d) * (1.0 - u) + (b - d) * (1.0 - v)
+            }
+        };
+        for (at, injected) in points.iter().step_by(37) {
+            let place = at.map(f64::from);
+            let found = ground(&other, place);
+            match mode {
+                Keep => assert!((found - injected).abs() < 1e-4, "{at:?}: {found}, not {injected}"),
+                Additive if is_of_map(*at) => {
+                    let wanted = ground(&plain, place) + injected;
+                    assert!((found - wanted).abs() < 1e-4, "{at:?}: {found}, not {wanted}");
+                }
+                Additive => {}
+            }
+            if spacing == 1 {
+                let [x, z] = place.map(|at| at + 0.37);
+                assert!((ground(&other, [x, z]) - exact(x, z)).abs() < 1e-4, "{at:?}");
+            }
+        }
+        let far = [-300.0, 300.0];
+        assert_eq!(ground(&apart, far), ground(&other, far), "features of the map change heights around it");
+        let path = Path { from: [24.0, 60.0], frames: 16, metres: 220.0, height: 150.0, every: 5, step: 5 };
+        let flight = flight(&mut world, &|x, z| ground(&other, [x, z]), &path);
+        println!("{spacing} {mode:?}: {flight:?}");
+        assert_eq!(flight.holes, 0);
+        assert!(flight.ready[0] <= 1.0 + ROUNDING && flight.ready[1] <= 1.0 + ROUNDING, "{flight:?}");
+        assert!(flight.ready_frames >= 8, "{flight:?}");
+        // The same as from the beginning, and as without.
+        let mut edited = World::of(&with(&[]), [160, 90]);
+        let camera = world.above([20.0, 20.0], 90.0);
+        let settled = |world: &mut World| {
+            world.view.set(camera).expect("valid");
+            world.settle();
+            picture(world)
+        };
+        let (whole, before) = (settled(&mut world), settled(&mut edited));
+        edited.scene.set_terrain_features(edited.land, &features(&config, &points, mode)).expect("valid");
+        edited.frame();
+        let drawn = edited.positions(&camera);
+        assert_eq!(holes(&edited, &camera, &drawn), 0);
+        assert!(settled(&mut edited) == whole && whole != before, "{spacing} {mode:?}");
+        edited.scene.set_terrain_features(edited.land, &TerrainFeatures::default()).expect("valid");
+        assert!(settled(&mut edited) == before, "{spacing} {mode:?}");
     }
 }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use relievo::gpu::Gpu;
 use relievo::ops::terrain::config::HeightInterpolation;
 use relievo::ops::terrain::features::Features;
-use relievo::ops::terrain::smooth::reference::smooth;
+use relievo::ops::terrain::field::region as heights;
 use relievo::ops::terrain::window::Region;
 use relievo::render::{Layer, Offscreen, Renderer, SunShadow, TargetFormat};
 use relievo::scene::{
@@ -109,7 +109,7 @@ fn read_positions(raw: &Raw, gpu: &Gpu, camera: &Camera) -> Vec<Option<DVec3>> {
 
 /// The height of the finest triangles at a world position, computed from the definition alone.
 fn truth(config: &TerrainConfig, x: f64, z: f64) -> f64 {
-    between(config, [x, z], |region| smooth(config, &Features::default(), region))
+    between(config, [x, z], |region| heights(config, &Features::default(), region))
 }
 
 /// The height of the triangles at a world position whose corners are the heights of a region of 2 × 2 samples.

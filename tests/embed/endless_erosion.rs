@@ -244,8 +244,8 @@ fn a_place_has_one_picture() {
     assert!(difference.outliers > 0.01, "{difference:?}");
 }
 
-/// Erosion of an elevation map, of the terrain's own spacing and of a coarser one: inside the map, across its border, and around it, the
-/// host has the heights of the terrain without erosion, eroded by the reference, and the device draws them.
+/// Erosion of an elevation map, of the terrain's own spacing and of a coarser one, with injected heights on it and around it: inside the
+/// map, across its border, and around it, the host has the heights of the terrain without erosion, eroded by the reference, and the device draws them.
 #[test]
 fn an_elevation_map_is_eroded() {
     type Source = fn(TerrainRecipe) -> TerrainSource;
@@ -256,8 +256,12 @@ fn an_elevation_map_is_eroded() {
         let map = crate::elevation::map([-60, -70], [90, 100], spacing, margin);
         let tiles = Arc::new(ElevationTiles::new(&config, &map).expect("valid"));
         let thermal = Thermal { iterations: 3, talus: 20.0 };
+        // Pits, a sample each.
+        let pits: Vec<_> = (-12..60).map(|at: i32| ([8 * at, 8 * (at % 5) - 16], -60.0)).collect();
+        let features = features(&config, &pits, FeatureMode::Keep);
         let [mut eroded, plain] = [Some(thermal), None].map(|thermal| {
-            let recipe = TerrainRecipe { thermal, ..TerrainRecipe::new(config.clone()) };
+            let features = features.clone();
+            let recipe = TerrainRecipe { thermal, features, ..TerrainRecipe::new(config.clone()) };
             World::of(&source(recipe).with_elevation(tiles.clone()), [128, 72])
         });
         let ground = |world: &World, at: [f64; 2]| {

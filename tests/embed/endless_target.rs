@@ -1,7 +1,7 @@
 //! Endless terrain on the way from one recipe to another.
 
 use relievo::ops::terrain::features::Features;
-use relievo::ops::terrain::smooth::reference::smooth;
+use relievo::ops::terrain::field::region as heights;
 use relievo::scene::{
     Camera, Despike, EndlessLimits, Scene, TerrainConfig, TerrainMorph, TerrainRecipe, TerrainSource,
 };
@@ -33,7 +33,7 @@ fn truth(time: f64, x: f64, z: f64) -> f64 {
     let time = (time * 65_536.0).round() as i64;
     let (from, to) = (config(), target());
     between(&from, [x, z], |region| {
-        let [from, to] = [&from, &to].map(|config| smooth(config, &Features::default(), region));
+        let [from, to] = [&from, &to].map(|config| heights(config, &Features::default(), region));
         let blend = |(from, to): (i32, i32)| from + ((i64::from(to - from) * time) >> 16) as i32;
         from.into_iter().zip(to).map(blend).collect()
     })

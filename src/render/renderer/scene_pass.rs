@@ -22,46 +22,31 @@ mod sealed {
     impl Sealed for wgpu::RenderBundleEncoder<'_> {}
 }
 
-impl<'a> ScenePass<'a> for wgpu::RenderPass<'_> {
-    fn set_pipeline(&mut self, pipeline: &'a wgpu::RenderPipeline) {
-        Self::set_pipeline(self, pipeline);
-    }
+macro_rules! recorded_by {
+    ($encoder:ty) => {
+        impl<'a> ScenePass<'a> for $encoder {
+            fn set_pipeline(&mut self, pipeline: &'a wgpu::RenderPipeline) {
+                Self::set_pipeline(self, pipeline);
+            }
 
-    fn set_bind_group(&mut self, index: u32, group: &'a wgpu::BindGroup) {
-        Self::set_bind_group(self, index, group, &[]);
-    }
+            fn set_bind_group(&mut self, index: u32, group: &'a wgpu::BindGroup) {
+                Self::set_bind_group(self, index, group, &[]);
+            }
 
-    fn set_vertex_buffer(&mut self, slot: u32, buffer: wgpu::BufferSlice<'a>) {
-        Self::set_vertex_buffer(self, slot, buffer);
-    }
+            fn set_vertex_buffer(&mut self, slot: u32, buffer: wgpu::BufferSlice<'a>) {
+                Self::set_vertex_buffer(self, slot, buffer);
+            }
 
-    fn set_index_buffer(&mut self, buffer: wgpu::BufferSlice<'a>) {
-        Self::set_index_buffer(self, buffer, wgpu::IndexFormat::Uint32);
-    }
+            fn set_index_buffer(&mut self, buffer: wgpu::BufferSlice<'a>) {
+                Self::set_index_buffer(self, buffer, wgpu::IndexFormat::Uint32);
+            }
 
-    fn draw_indexed_indirect(&mut self, arguments: &'a wgpu::Buffer, offset: u64) {
-        Self::draw_indexed_indirect(self, arguments, offset);
-    }
+            fn draw_indexed_indirect(&mut self, arguments: &'a wgpu::Buffer, offset: u64) {
+                Self::draw_indexed_indirect(self, arguments, offset);
+            }
+        }
+    };
 }
 
-impl<'a> ScenePass<'a> for wgpu::RenderBundleEncoder<'a> {
-    fn set_pipeline(&mut self, pipeline: &'a wgpu::RenderPipeline) {
-        Self::set_pipeline(self, pipeline);
-    }
-
-    fn set_bind_group(&mut self, index: u32, group: &'a wgpu::BindGroup) {
-        Self::set_bind_group(self, index, group, &[]);
-    }
-
-    fn set_vertex_buffer(&mut self, slot: u32, buffer: wgpu::BufferSlice<'a>) {
-        Self::set_vertex_buffer(self, slot, buffer);
-    }
-
-    fn set_index_buffer(&mut self, buffer: wgpu::BufferSlice<'a>) {
-        Self::set_index_buffer(self, buffer, wgpu::IndexFormat::Uint32);
-    }
-
-    fn draw_indexed_indirect(&mut self, arguments: &'a wgpu::Buffer, offset: u64) {
-        Self::draw_indexed_indirect(self, arguments, offset);
-    }
-}
+recorded_by!(wgpu::RenderPass<'_>);
+recorded_by!(wgpu::RenderBundleEncoder<'a>);

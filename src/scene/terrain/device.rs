@@ -31,7 +31,7 @@ pub(in crate::scene) async fn made(
     layouts: &SceneLayouts,
     source: &TerrainSource,
 ) -> Result<(Terrain, Instances, (Vec<Chunk>, Vec<SceneDraw>)), Error> {
-    let TerrainSource { patches, textures, .. } = source;
+    let TerrainSource { patches, .. } = source;
     source.check_target()?;
     let config = source.config();
     let mut morphing = None;
@@ -52,11 +52,7 @@ pub(in crate::scene) async fn made(
             vec![fields.clone()]
         }
     };
-    let textures = match textures {
-        Some(textures) => textures.clone(),
-        None => TerrainTexture::of_zones(&config.zones)?,
-    };
-    let zones = Materials::new(gpu, &config.zones, &textures)?;
+    let zones = zones_of(gpu, source)?;
     let mut ground = Ground::new(config)?;
     let mut instances = Instances::new(parts.iter().map(|part| part.count as usize).sum());
     let indices = patch_indices(config.patch_size);
@@ -90,6 +86,41 @@ async fn generated(gpu: &Gpu, recipe: &Recipe, patches: &[[i32; 2]]) -> Result<V
     generator.generate_async(gpu, patches, MARGIN, &mut |_| ()).await
 }
 
+/// The zones of a terrain with their textures on the device.
+pub(super) fn zones_of(gpu: &Gpu, source: &TerrainSource) -> Result<Materials, Error> {
+    let zones = &source.config().zones;
+    let built_in = || source.textures.is_none().then(|| TerrainTexture::of_zones(zones)).transpose();
+    let built_in = built_in()?.unwrap_or_default();
+    Materials::new(gpu, zones, source.textures.as_deref().unwrap_or(&built_in))
+}
+
+/// What drawing needs to know about a terrain with `size` samples along an edge of a patch, in rows of `width` heights.
+pub(super) fn params_of(
+    source: &TerrainSource,
+    (width, size): (u32, u32),
+    zones: &Materials,
+) -> TerrainParams {
+    let config = source.config();
+    TerrainParams {
+        in_width: width,
+        size,
+        spacing: config.terrain_scale as f32,
+        run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
+        tiling: (config.tiles_per_patch() / f64::from(config.patch_size - 1)) as f32,
+        tiles_per_unit: (1.0 / config.tile()) as f32,
+        zone_count: zones.zone_count,
+        additive: source.shading.weights.code(),
+        planes: planes(config.triplanar),
+        variation: config.variation as f32,
+        relief_depth: source.relief.map_or(0.0, |relief| relief.depth),
+        relief_distance: source.relief.map_or(1.0, |relief| relief.distance),
+        first_patch: 0,
+        normals_width: 0,
+        erosion_depth: 0.0,
+        unused: 0.0,
+    }
+}
+
 /// The drawable of the patches `shown` in one part of the heights. `first` is the index of the first of these patches.
 fn drawable(
     (gpu, layouts): (&Gpu, &SceneLayouts),
@@ -98,24 +129,9 @@ fn drawable(
     (first, shown): (usize, &[[i32; 2]]),
 ) -> Result<TerrainDrawable, Error> {
     let config = source.config();
-    let size = config.patch_size;
     let params = TerrainParams {
-        in_width: fields.width,
-        size,
-        spacing: config.terrain_scale as f32,
-        run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
-        tiling: (config.tiles_per_patch() / f64::from(size - 1)) as f32,
-        tiles_per_unit: (1.0 / config.tile()) as f32,
-        zone_count: zones.zone_count,
-        additive: source.shading.weights.code(),
-        planes: planes(config.triplanar),
-        variation: config.variation as f32,
         first_patch: first as u32,
-        normals_width: 0,
-        relief_depth: source.relief.map_or(0.0, |relief| relief.depth),
-        relief_distance: source.relief.map_or(1.0, |relief| relief.distance),
-        erosion_depth: 0.0,
-        unused: 0.0,
+        ..params_of(source, (fields.width, config.patch_size), zones)
     };
     let patches = Buffer::new(gpu, "patches", fields.count.max(1) as usize)?;
     if !shown.is_empty() {

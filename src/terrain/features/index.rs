@@ -56,19 +56,6 @@ impl FeatureIndex {
     /// [`GpuError::Limit`] when there are more features than the capacity.
     pub fn write(
         &self,
-        gpu: &Gpu,
-        windows: u32,
-        points: impl Fn(usize, u32) -> Vec<(u32, u32, i32)>,
-    ) -> Result<(), GpuError> {
-        self.write_to(&mut &*gpu, windows, points)
-    }
-
-    /// The same as [`FeatureIndex::write`] with writes of any kind, such as staged ones.
-    ///
-    /// # Errors
-    /// Those of [`FeatureIndex::write`].
-    pub(crate) fn write_to(
-        &self,
         to: &mut impl Upload,
         windows: u32,
         points: impl Fn(usize, u32) -> Vec<(u32, u32, i32)>,

@@ -7,13 +7,9 @@ use crate::terrain::fixed::{Draw, mean_of_four};
 use crate::terrain::lattice::{Given, Injected, base_lattice, world};
 use crate::terrain::window::{Region, Span};
 
-/// Heights of a region, in rows of `region.width` samples. The region must be valid.
-pub fn height(config: &TerrainConfig, features: &Features, region: Region) -> Vec<i32> {
-    height_of(config, features, None, region)
-}
-
-/// The same, with given heights.
-pub(crate) fn height_of(
+/// Heights of a region, in rows of `region.width` samples. `given` heights replace those of their lattice, and finer ones follow. The
+/// region must be valid.
+pub(crate) fn height(
     config: &TerrainConfig,
     features: &Features,
     given: Option<&Given<'_>>,

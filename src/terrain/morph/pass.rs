@@ -76,12 +76,7 @@ impl MorphJob {
     ///
     /// # Errors
     /// [`InputError`] for a time outside 0..=1; [`GpuError`].
-    pub fn set(&self, gpu: &Gpu, morph: Morph) -> Result<(), Error> {
-        self.stage(&mut &*gpu, morph)
-    }
-
-    /// Sets the time of the blend for the next submission; the upload goes through `to`.
-    pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
+    pub fn set(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         morph.validate()?;
         Ok(to.uniform(&self.uniform, &MorphParams { time: morph.fixed_time(), ..self.params })?)
     }

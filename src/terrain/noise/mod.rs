@@ -36,7 +36,7 @@ pub mod reference;
 #[cfg(doc)]
 use crate::terrain::config::TerrainConfig;
 #[cfg(feature = "gpu")]
-pub(crate) use pass::{NoiseJob, NoisePass};
+pub(crate) use pass::NoisePass;
 
 /// 2^32 divided by the golden ratio: its multiples differ in all bits.
 const GOLDEN: u32 = 0x9e37_79b9;

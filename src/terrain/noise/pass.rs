@@ -3,10 +3,10 @@
 use std::array;
 
 use crate::gpu::bindings::terrain::noise as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform, Upload};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
 use crate::shared::terrain::noise::NoiseParams;
 use crate::terrain::config::TerrainConfig;
-use crate::terrain::window::{Region, Regions};
+use crate::terrain::window::Regions;
 use crate::{Error, InputError};
 
 /// Generates heights from octaves of noise. Each pass is compiled for one generator.
@@ -22,7 +22,7 @@ impl NoisePass {
         Ok(Self(bindings::kernel(gpu, &bindings::Constants { generator })?))
     }
 
-    /// Prepares the generation of `regions`. `output` must hold all heights of the regions. The configuration must be valid, and that
+    /// Prepares the generation of `regions`, which begin at the samples in `origins`. `output` must hold all heights of the regions. The configuration must be valid, and that
     /// of this generator.
     ///
     /// # Errors
@@ -32,8 +32,9 @@ impl NoisePass {
         gpu: &Gpu,
         config: &TerrainConfig,
         regions: Regions,
+        origins: &Buffer<[i32; 2]>,
         output: &Buffer<i32>,
-    ) -> Result<NoiseJob, Error> {
+    ) -> Result<Job, Error> {
         let Regions { count, width, coarser } = regions;
         InputError::check_within("coarser", coarser, 0..=config.levels())?;
         output.check_holds("output", regions.points())?;
@@ -47,7 +48,6 @@ impl NoisePass {
             octaves,
             ranges: array::from_fn(|four| array::from_fn(|lane| range(4 * four + lane)).into()),
         };
-        let origins = Buffer::new(gpu, "region origins", count as usize)?;
         let group = bindings::Group {
             params: &Uniform::new(gpu, "noise", &params)?,
             origins: origins.slice(),
@@ -55,31 +55,6 @@ impl NoisePass {
         };
         let groups = vec![group.bind(gpu, &self.0)?];
         let step = Step::covering(&self.0, groups, [width, width, count]);
-        let job = Job::new(gpu, "terrain/noise", vec![step])?;
-        Ok(NoiseJob { origins, job })
-    }
-}
-
-/// A prepared generation of a batch of regions from octaves of noise.
-#[derive(Debug, Clone)]
-pub struct NoiseJob {
-    /// First sample of each region, in distances between samples.
-    origins: Buffer<[i32; 2]>,
-    job: Job,
-}
-
-impl NoiseJob {
-    /// Writes where regions begin.
-    ///
-    /// # Errors
-    /// [`GpuError`].
-    pub fn write(&self, to: &mut impl Upload, regions: &[Region]) -> Result<(), GpuError> {
-        let origins: Vec<_> = regions.iter().map(|region| region.first.map(|index| index as i32)).collect();
-        to.elements(&self.origins, 0, &origins)
-    }
-
-    /// Records the generation of all regions of the batch.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.job.record(encoder);
+        Ok(Job::new(gpu, "terrain/noise", vec![step])?)
     }
 }

@@ -14,7 +14,6 @@ use crate::{Error, InputError};
 pub struct HeightBatch {
     jobs: Vec<RegionJob>,
     fields: Vec<Fields>,
-    scratch: HeightScratch,
 }
 
 impl HeightBatch {
@@ -40,16 +39,11 @@ impl HeightBatch {
             let size = count * (part + 1) / parts - count * part / parts;
             let output = Fields::new(gpu, "terrain heights", config.patch_size + 2 * apron, size)?;
             let buffers = HeightBuffers { output: &output.heights, scratch: &scratch };
-            jobs.push(pass.prepare(
-                gpu,
-                config,
-                Windows { count: size, apron },
-                feature_capacity,
-                buffers,
-            )?);
+            let windows = Windows { count: size, apron };
+            jobs.push(pass.prepare(gpu, config, windows, feature_capacity, buffers)?);
             fields.push(output);
         }
-        Ok(Self { jobs, fields, scratch })
+        Ok(Self { jobs, fields })
     }
 
     /// Sets the patches and features for the next recordings. Patches fill the parts of the batch in order.
@@ -78,10 +72,5 @@ impl HeightBatch {
     /// The generated heights, one entry per part of the batch.
     pub fn fields(&self) -> &[Fields] {
         &self.fields
-    }
-
-    /// Memory of heights and scratch on the device, in bytes, without the index of features.
-    pub fn bytes(&self) -> u64 {
-        self.fields.iter().map(|fields| fields.heights.bytes()).sum::<u64>() + self.scratch.bytes()
     }
 }

@@ -2,13 +2,13 @@
 
 mod batch;
 
-use crate::gpu::{Gpu, Upload};
+use crate::gpu::{Buffer, Gpu, Job, Upload};
 use crate::shared::terrain::noise::{NOISE_FBM, NOISE_RIDGED, NOISE_SIMPLEX};
 use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, Offset, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::levels::{GivenHeights, LevelJob, LevelPass};
-use crate::terrain::noise::{NoiseJob, NoisePass};
+use crate::terrain::noise::NoisePass;
 use crate::terrain::window::{Region, Regions, Window, Windows};
 use crate::terrain::{height, smooth, wrap};
 use crate::{Error, InputError};
@@ -72,14 +72,6 @@ impl RegionPass {
         Ok(Self { pass, compiled })
     }
 
-    /// Name of the kernel.
-    pub fn label(&self) -> &'static str {
-        match &self.pass {
-            Pass::Levels(pass) => pass.label,
-            Pass::Noise(_) => "terrain/noise",
-        }
-    }
-
     /// Prepares the generation of `windows`. `feature_capacity` is the largest number of injected points. A point counts once for
     /// every window that depends on it.
     ///
@@ -137,7 +129,11 @@ impl RegionPass {
                 let job = pass.prepare(gpu, config, regions, feature_capacity, buffers, given)?;
                 Prepared::Levels(Box::new(job))
             }
-            Pass::Noise(pass) => Prepared::Noise(pass.prepare(gpu, config, regions, buffers.output)?),
+            Pass::Noise(pass) => {
+                let origins = Buffer::new(gpu, "region origins", regions.count as usize)?;
+                let job = pass.prepare(gpu, config, regions, &origins, buffers.output)?;
+                Prepared::Noise(origins, job)
+            }
         };
         Ok(RegionJob { config: config.clone(), regions, apron: 0, prepared })
     }
@@ -156,8 +152,8 @@ pub struct RegionJob {
 enum Prepared {
     /// Levels of subdivision.
     Levels(Box<LevelJob>),
-    /// Octaves of noise.
-    Noise(NoiseJob),
+    /// Octaves of noise, of regions whose first samples are in the buffer.
+    Noise(Buffer<[i32; 2]>, Job),
 }
 
 impl RegionJob {
@@ -181,15 +177,7 @@ impl RegionJob {
     /// # Errors
     /// [`InputError`] for too many regions or regions out of bounds, and for features with noise; [`crate::gpu::GpuError::Limit`] for more
     /// features than the capacity.
-    pub fn set_regions(&self, gpu: &Gpu, firsts: &[[i64; 2]], features: &Features) -> Result<(), Error> {
-        self.stage_regions(&mut &*gpu, firsts, features)
-    }
-
-    /// The same as [`RegionJob::set_regions`] with writes of any kind, such as staged ones.
-    ///
-    /// # Errors
-    /// Those of [`RegionJob::set_regions`].
-    pub(crate) fn stage_regions(
+    pub fn set_regions(
         &self,
         to: &mut impl Upload,
         firsts: &[[i64; 2]],
@@ -223,7 +211,7 @@ impl RegionJob {
     ) -> Result<(), Error> {
         match &self.prepared {
             Prepared::Levels(job) => Ok(job.stage_given(to, number, heights)?),
-            Prepared::Noise(_) => Ok(()),
+            Prepared::Noise(..) => Ok(()),
         }
     }
 
@@ -231,7 +219,7 @@ impl RegionJob {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         match &self.prepared {
             Prepared::Levels(job) => job.record(encoder),
-            Prepared::Noise(job) => job.record(encoder),
+            Prepared::Noise(_, job) => job.record(encoder),
         }
     }
 
@@ -255,10 +243,11 @@ impl RegionJob {
     ) -> Result<(), Error> {
         match &self.prepared {
             Prepared::Levels(job) => job.write(to, regions, worlds, features),
-            Prepared::Noise(job) => {
+            Prepared::Noise(origins, _) => {
                 let bound = || "must be empty: only the generator \"diamondSquare\" spreads injected heights";
                 InputError::check(features.is_empty(), "features.len", features.len(), bound)?;
-                Ok(job.write(to, regions)?)
+                let first = |region: &Region| region.first.map(|index| index as i32);
+                Ok(to.elements(origins, 0, &regions.iter().map(first).collect::<Vec<_>>())?)
             }
         }
     }

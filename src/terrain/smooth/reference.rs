@@ -7,13 +7,9 @@ use crate::terrain::fixed::{Draw, four_point, mean_of_two};
 use crate::terrain::lattice::{Given, Injected, base_lattice, limited, world};
 use crate::terrain::window::{Region, SMOOTH_RIM, Span};
 
-/// Heights of a region, in rows of `region.width` samples. The region must be valid, and `config.interpolation` must be `Smooth`.
-pub fn smooth(config: &TerrainConfig, features: &Features, region: Region) -> Vec<i32> {
-    smooth_of(config, features, None, region)
-}
-
-/// The same, with given heights.
-pub(crate) fn smooth_of(
+/// Heights of a region, in rows of `region.width` samples. `given` heights replace those of their lattice, and finer ones follow. The
+/// region must be valid, and `config.interpolation` must be `Smooth`.
+pub(crate) fn smooth(
     config: &TerrainConfig,
     features: &Features,
     given: Option<&Given<'_>>,

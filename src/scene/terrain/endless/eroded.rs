@@ -326,7 +326,7 @@ impl Erosion {
         };
         if let Some(own) = &job.own {
             let all: Vec<Node> = nodes.iter().map(|new| new.node).collect();
-            own.around.stage_regions(staged, &firsts(&all), features)?;
+            own.around.set_regions(staged, &firsts(&all), features)?;
             for (number, new) in nodes.iter().enumerate() {
                 let around = new.elevation.as_ref().and_then(|elevation| elevation.around.as_ref());
                 around.map_or(Ok(()), |heights| own.stage_given(staged, number, heights))?;
@@ -337,7 +337,7 @@ impl Erosion {
             else {
                 continue;
             };
-            regions.around.stage_regions(staged, &firsts(&[block.node]), features)?;
+            regions.around.set_regions(staged, &firsts(&[block.node]), features)?;
             block.given.as_ref().map_or(Ok(()), |heights| regions.stage_given(staged, 0, heights))?;
         }
         Ok(staged.elements(&job.corners, 0, &cut.corners)?)

@@ -17,6 +17,7 @@ use std::sync::{Arc, Mutex};
 use glam::{DVec3, Vec3};
 
 use super::TerrainDrawable;
+use super::device::{params_of, zones_of};
 use super::drawable::{TerrainGeometry, patch_indices};
 use super::source::TerrainSource;
 use crate::animation::Frame;
@@ -36,18 +37,15 @@ use crate::shared::lod::object::{OBJECT_LEVELS, SceneDraw};
 use crate::shared::render::scene_terrain::{MORPH_START, STITCHED, TerrainFrame, TerrainNode, TerrainParams};
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
-use crate::terrain::cover::planes;
 use crate::terrain::features::Features;
 use crate::terrain::injection::{ChangedPoint, FeatureOffsets};
 use crate::terrain::limit::ErosionLimit;
-use crate::terrain::materials::Materials;
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
 use crate::terrain::node::NodeFacts;
 use crate::terrain::quadtree::{Beside, Cover, Leaf, Node};
 use crate::terrain::recipe::Recipe;
 use crate::terrain::remainder::remainder;
-use crate::terrain::texture::TerrainTexture;
 use crate::terrain::window::Region;
 use crate::{Error, InputError};
 use elevation::{Beyond, Elevation, NodeElevation};
@@ -225,15 +223,6 @@ struct Resident {
     facts: Option<Facts>,
 }
 
-/// What an elevation map gives to a node.
-enum Elevated {
-    /// Nothing: it does not reach the node.
-    Not,
-    /// Heights that are on their way.
-    NotYet,
-    By(NodeElevation),
-}
-
 /// Facts about a node on the host, in world units.
 #[derive(Debug, Clone, Copy)]
 struct Facts {
@@ -257,11 +246,11 @@ pub(in crate::scene) fn made(
     (recipe, limits): (&Recipe, EndlessLimits),
 ) -> Result<(Endless, Instances, Drawn), Error> {
     recipe.validate(&[], 0)?;
-    let elevation =
+    let mut elevation =
         source.elevation.as_ref().map(|given| Elevation::new(given, &recipe.config)).transpose()?;
+    let recipe = &generated(recipe, &recipe.features, elevation.as_mut());
     let grid = Grid::new(&recipe.config, limits.node_size, elevation.is_some())?;
     pool::check(recipe, grid)?;
-    check_features(recipe, elevation.is_some())?;
     let target = source.target.as_ref().map(|(target, _)| &**target);
     source.check_target()?;
     if let Some(target) = target {
@@ -306,8 +295,8 @@ pub(in crate::scene) fn made(
         frame: 0,
         new: Vec::new(),
         again: BTreeSet::new(),
-        offsets: FeatureOffsets::new(&recipe.config, &recipe.features),
-        target_offsets: target.map(|target| FeatureOffsets::new(&target.config, &target.features)),
+        offsets: offsets_of(recipe, elevation.as_ref()),
+        target_offsets: target.map(|target| offsets_of(target, None)),
         are_bounds_changed: false,
         tables: Arc::default(),
         ground: FinestGround::new(recipe, (source.target.clone(), erosion), elevation.clone())?,
@@ -330,30 +319,12 @@ fn drawn(
     source: &TerrainSource,
     (pool, grid, capacity): (&Pool, Grid, usize),
 ) -> Result<(Vec<Chunk>, Vec<SceneDraw>), Error> {
-    let config = source.config();
-    let textures = match &source.textures {
-        Some(textures) => textures.clone(),
-        None => TerrainTexture::of_zones(&config.zones)?,
-    };
-    let zones = Materials::new(gpu, &config.zones, &textures)?;
+    let zones = zones_of(gpu, source)?;
     let indices = patch_indices(grid.cells + 1);
     let params = TerrainParams {
-        in_width: grid.shape(0).tile_width(),
-        size: grid.cells + 1,
-        spacing: config.terrain_scale as f32,
-        run: (2.0 * config.terrain_scale * HEIGHT_ONE) as f32,
-        tiling: (config.tiles_per_patch() / f64::from(config.patch_size - 1)) as f32,
-        tiles_per_unit: (1.0 / config.tile()) as f32,
-        zone_count: zones.zone_count,
-        additive: source.shading.weights.code(),
-        planes: planes(config.triplanar),
-        variation: config.variation as f32,
-        first_patch: 0,
         normals_width: if pool.size.has_normals { grid.shape(0).normals_width() } else { 0 },
-        relief_depth: source.relief.map_or(0.0, |relief| relief.depth),
-        relief_distance: source.relief.map_or(1.0, |relief| relief.distance),
         erosion_depth: pool.size.erosion.map_or(0.0, |limit| limit.depth as f32),
-        unused: 0.0,
+        ..params_of(source, (grid.shape(0).tile_width(), grid.cells + 1), &zones)
     };
     let geometry = TerrainGeometry {
         params: Uniform::new(gpu, "terrain", &params)?,
@@ -531,26 +502,20 @@ impl Endless {
         let target = self.source.target.as_ref().zip(self.target_offsets.as_ref());
         for node in nodes {
             let Some(resident) = self.residents.get_mut(node) else { continue };
-            let (region, beyond) = (grid.region_of(*node), resident.beyond);
+            let beyond = resident.beyond;
             let facts = resident.found.map(|found| {
-                let injected = self.offsets.bound(config, region);
                 let [own, other] = [Some(found.own), found.other]
                     .map(|facts| FoundFacts { own: facts.unwrap_or(found.own), other: None });
+                let below =
+                    |facts: &FoundFacts| facts_of((config, &self.offsets), (grid, *node), facts, beyond);
                 if let Some(limit) = self.size.erosion {
                     if !grid.is_eroded(self.size, node.level) {
-                        let plain = facts_of(config, grid, node.level, (&found, beyond), injected);
-                        return plain.beside_eroded(limit.depth);
+                        return below(&found).beside_eroded(limit.depth);
                     }
-                    let own = facts_of(config, grid, node.level, (&own, beyond), injected);
-                    let eroded = facts_of(config, grid, node.level, (&other, beyond), injected);
-                    return own.eroded(eroded, limit.depth);
+                    return below(&own).eroded(below(&other), limit.depth);
                 }
-                let Some(((target, _), offsets)) = target else {
-                    return facts_of(config, grid, node.level, (&found, beyond), injected);
-                };
-                let own = facts_of(config, grid, node.level, (&own, beyond), injected);
-                let injected = offsets.bound(&target.config, region);
-                own.blended(facts_of(&target.config, grid, node.level, (&other, beyond), injected))
+                let Some(((target, _), offsets)) = target else { return below(&found) };
+                below(&own).blended(facts_of((&target.config, offsets), (grid, *node), &other, beyond))
             });
             resident.facts = facts.or(resident.facts);
         }
@@ -560,14 +525,16 @@ impl Endless {
     /// frame may make, and otherwise coarsest first.
     ///
     /// # Errors
-    /// [`InputError`] for heights out of bounds, and for terrain with an elevation map.
+    /// [`InputError`] for heights out of bounds.
     pub fn set_features(&mut self, features: &Features) -> Result<(), InputError> {
-        let recipe = Recipe { features: features.clone(), ..self.recipe.clone() };
-        recipe.validate(&[], 0)?;
-        check_features(&recipe, self.elevation.is_some())?;
-        let offsets = FeatureOffsets::new(&recipe.config, features);
-        let changed = self.offsets.changed(&offsets);
-        (self.recipe, self.offsets) = (recipe, offsets);
+        Recipe { features: features.clone(), ..self.recipe.clone() }.validate(&[], 0)?;
+        let mut elevation = self.elevation.clone();
+        let recipe = generated(&self.recipe, features, elevation.as_mut());
+        let offsets = offsets_of(&recipe, elevation.as_ref());
+        let mut changed = self.offsets.changed(&offsets);
+        let maps = elevation.as_ref().zip(self.elevation.as_ref());
+        changed.extend(maps.into_iter().flat_map(|(new, old)| new.changed(old)));
+        (self.recipe, self.offsets, self.elevation) = (recipe, offsets, elevation);
         let also = (self.source.target.clone(), self.size.erosion);
         self.ground = FinestGround::new(&self.recipe, also, self.elevation.clone())?;
         let is_region_changed = |region| changed.iter().any(|point: &ChangedPoint| point.changes(region));
@@ -630,16 +597,17 @@ impl Endless {
         while self.new.len() < self.limits.nodes_per_frame as usize / 2
             && let Some(node) = self.again.pop_last()
         {
-            let elevation = match self.given_to(node)? {
-                Elevated::NotYet => {
-                    awaited.insert(node);
-                    continue;
-                }
-                Elevated::Not => None,
-                Elevated::By(given) => Some(given),
+            let Some(elevation) = self.given_to(node)? else {
+                awaited.insert(node);
+                continue;
             };
             let Some(resident) = self.residents.get_mut(&node) else { continue };
             resident.beyond = elevation.as_ref().map_or(Beyond::Generated, |given| given.beyond);
+            if let (Some(Facts { heights: [low, high], .. }), Some(given)) = (&mut resident.facts, &elevation)
+            {
+                let [lowest, highest] = given.range();
+                (*low, *high) = (low.min(lowest), high.max(highest));
+            }
             (resident.made, resident.used, resident.found) = (self.frame, self.frame, None);
             self.new.push(NewNode { node, slot: resident.slot, elevation });
         }
@@ -654,20 +622,16 @@ impl Endless {
     /// # Errors
     /// Those of the elevation map's source.
     fn admit(&mut self, node: Node) -> Result<(), Error> {
-        let elevation = match self.given_to(node)? {
+        let given = self.given_to(node)?;
+        if given.is_none() {
+            self.statistics.awaited += 1;
             // The coarsest nodes are always drawn: without the map, until its heights are there.
-            Elevated::NotYet if node.level == self.grid.top => {
-                self.statistics.awaited += 1;
-                self.again.insert(node);
-                None
-            }
-            Elevated::NotYet => {
-                self.statistics.awaited += 1;
+            if node.level < self.grid.top {
                 return Ok(());
             }
-            Elevated::Not => None,
-            Elevated::By(given) => Some(given),
-        };
+            self.again.insert(node);
+        }
+        let elevation = given.flatten();
         if self.free.is_empty() {
             // Siblings leave together: without one of them, the others cannot be drawn.
             let unused = self.residents.iter().filter(|(_, resident)| resident.used < self.frame);
@@ -693,17 +657,20 @@ impl Endless {
         Ok(())
     }
 
-    /// What the elevation map gives to a node.
-    fn given_to(&mut self, node: Node) -> Result<Elevated, Error> {
-        let Some(map) = &self.elevation else { return Ok(Elevated::Not) };
+    /// What the elevation map gives to a node, if it reaches it; `None` while heights are on their way.
+    fn given_to(&mut self, node: Node) -> Result<Option<Option<NodeElevation>>, Error> {
+        let Some(map) = &self.elevation else { return Ok(Some(None)) };
         let region = self.grid.region_of(node);
         let around = self.pool.around(node);
         if !map.reaches(around.unwrap_or(region)) {
-            return Ok(Elevated::Not);
+            return Ok(Some(None));
         }
-        let heights = |region| map.heights(self.pool.given_region(&self.recipe.config, region));
-        let own = heights(region)?;
-        let beyond = map.beyond(&self.recipe.config, region.coarser, self.grid.cells_of(node))?;
+        let config = &self.recipe.config;
+        let heights = |region| map.heights(self.pool.given_region(config, region));
+        let own_region = self.pool.given_region(config, region);
+        let own = map.plain(own_region)?;
+        let plain = own.as_deref().unwrap_or_default();
+        let beyond = map.beyond(config, &self.offsets, (region, plain), self.grid.cells_of(node))?;
         if let Some(around) = around
             && !self.given_around.iter().any(|(region, _)| *region == around)
         {
@@ -714,11 +681,11 @@ impl Endless {
             known.find_map(|(_, heights)| heights.clone())
         });
         Ok(match (own, around, beyond) {
-            (Some(heights), around @ (None | Some(Some(_))), Some(beyond)) => {
-                let around = around.flatten();
-                Elevated::By(NodeElevation { heights: Arc::new(heights), around, beyond })
+            (Some(plain), around @ (None | Some(Some(_))), Some(beyond)) => {
+                let (heights, around) = (Arc::new(map.with_features(own_region, plain)), around.flatten());
+                Some(Some(NodeElevation { heights, around, beyond }))
             }
-            _ => Elevated::NotYet,
+            _ => None,
         })
     }
 
@@ -974,10 +941,16 @@ fn with_pixels(view: &SelectView) -> SelectView {
     view
 }
 
-/// Refuses injected heights beside an elevation map.
-fn check_features(recipe: &Recipe, has_map: bool) -> Result<(), InputError> {
-    let bound = || "must be empty where an elevation map is given: change the map";
-    InputError::check(recipe.features.is_empty() || !has_map, "features.len", recipe.features.len(), bound)
+/// The recipe with the injected heights `features` that the generator injects; the elevation map has the others.
+fn generated(recipe: &Recipe, features: &Features, elevation: Option<&mut Elevation>) -> Recipe {
+    let features = elevation.map_or_else(|| features.clone(), |map| map.set_features(features));
+    Recipe { features, ..recipe.clone() }
+}
+
+/// The injected heights of a recipe, by how much they matter.
+fn offsets_of(recipe: &Recipe, elevation: Option<&Elevation>) -> FeatureOffsets {
+    let is_near = |sample| elevation.is_some_and(|map| map.is_near(sample));
+    FeatureOffsets::new(&recipe.config, &recipe.features, is_near)
 }
 
 /// Checks the target of a terrain with some nodes.
@@ -1018,17 +991,15 @@ fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
     OUTSIDE * LodCamera { ahead: towards / distance, ..*camera }.allows(center, radius)
 }
 
-/// The facts of a node of a level, from what the device found and what lies below. `injected` bounds what finer injected heights
-/// change.
+/// The facts of a node, from what the device found and what lies below, finer injected heights among it.
 fn facts_of(
-    config: &TerrainConfig,
-    grid: Grid,
-    level: u32,
-    (FoundFacts { own, other: generated }, beyond): (&FoundFacts, Beyond),
-    injected: i64,
+    (config, offsets): (&TerrainConfig, &FeatureOffsets),
+    (grid, node): (Grid, Node),
+    FoundFacts { own, other: generated }: &FoundFacts,
+    beyond: Beyond,
 ) -> Facts {
-    let below =
-        |facts: &NodeFacts| remainder(config, grid.coarser(level), 2 * i64::from(facts.second_difference));
+    let region = grid.region_of(node);
+    let below = |facts: &NodeFacts| remainder(config, region.coarser, 2 * i64::from(facts.second_difference));
     // Without the map, the region would be bounded by its generated heights.
     let without = generated.as_ref().map_or(0, below);
     let below = match beyond {
@@ -1036,11 +1007,12 @@ fn facts_of(
         Beyond::Map(distance) => without.max(distance),
         Beyond::Further(distance) => without + distance,
     };
-    let below = below + injected;
+    let [low, high] = [i64::from(own.lowest) - below, i64::from(own.highest) + below];
+    let below = below + offsets.bound(config, region, [low, high]);
     // Smooth interpolation is linear only where no height is clamped.
     let largest = i64::from(own.lowest.unsigned_abs().max(own.highest.unsigned_abs()));
     let below = if largest + below > HEIGHT_LIMIT { 2 * HEIGHT_LIMIT } else { below };
-    let deviation = i64::from(own.deviation.max(if level > 0 { own.stitched } else { 0 }));
+    let deviation = i64::from(own.deviation.max(if node.level > 0 { own.stitched } else { 0 }));
     let world = |height: i64| height as f64 / HEIGHT_ONE;
     let heights = [i64::from(own.lowest) - below, i64::from(own.highest) + below].map(world);
     Facts { heights, error: (world(deviation + below) as f32).next_up() }

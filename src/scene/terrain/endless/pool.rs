@@ -526,7 +526,7 @@ impl Pool {
         holes: &[TerrainHole],
     ) -> Result<(), Error> {
         if let Some(blend) = self.blend.as_ref().filter(|blend| blend.is_due) {
-            blend.job.stage(staged, time)?;
+            blend.job.set(staged, time)?;
         }
         for Batch { heights, level, job, nodes, cut } in &self.batches {
             let job = &self.jobs[*heights as usize][*level][*job];
@@ -536,7 +536,7 @@ impl Pool {
             }
             staged.elements(&job.slots, 0, &slots)?;
             let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
-            job.heights.stage_regions(staged, &firsts, self.features_of(*heights, features))?;
+            job.heights.set_regions(staged, &firsts, self.features_of(*heights, features))?;
             if let Some((_, slots)) = job.given.as_ref().and_then(|given| given.generated.as_ref()) {
                 staged.elements(slots, 0, &generated)?;
             }

@@ -49,7 +49,7 @@ async fn check(
         })
         .collect();
     let index = FeatureIndex::new(gpu, &[width], count, features.map_or(0, |_| heights.len()))?;
-    index.write(gpu, count, |_, window| {
+    index.write(&mut &*gpu, count, |_, window| {
         let marked = marks[window as usize].iter().enumerate().filter(|(_, marked)| **marked);
         marked.map(|(at, _)| (at as u32 % width + 1, at as u32 / width + 1, 7)).collect()
     })?;

@@ -71,7 +71,7 @@ async fn check_regions(cases: &mut Cases<'_>, config: &TerrainConfig, coarser: u
     let buffers = HeightBuffers { output: &output.buffer, scratch: &scratch };
     let job = RegionPass::new(gpu, config, None)?.prepare_regions(gpu, config, regions, 0, buffers)?;
     let none = Features::default();
-    job.set_regions(gpu, &firsts, &none)?;
+    job.set_regions(&mut &*gpu, &firsts, &none)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
     let expected: Vec<i32> = firsts
         .iter()
