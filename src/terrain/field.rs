@@ -1,14 +1,12 @@
 //! Complete height fields on the CPU. The reference implementations of all operations run in the order of a recipe.
 
-use super::{border, despike, height, hydraulic, limit, noise, pad, smooth, thermal, wrap};
+use super::{border, despike, height, hydraulic, noise, pad, smooth, thermal, wrap};
 use crate::InputError;
 use crate::parallel::prelude::*;
 use crate::terrain::border::neighbours;
 use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::lattice::Given;
-use crate::terrain::limit::ErosionLimit;
-use crate::terrain::limit::reference::ErodedAt;
 use crate::terrain::pad::surrounds;
 use crate::terrain::recipe::{ErosionStage, Recipe};
 use crate::terrain::window::{Region, Span, Window};
@@ -117,28 +115,13 @@ pub(crate) fn region_of(
     }
 }
 
-/// Heights of a region of `seamless` terrain at its samples' own resolution, after the recipe's erosion, which moves heights by at most
-/// `limit`, with given heights before erosion as for [`region_of`]. The region must be valid with [`Recipe::apron`] samples around it.
-/// The recipe must have no despiking.
-pub(crate) fn eroded_region_of(
-    recipe: &Recipe,
-    limit: ErosionLimit,
-    given: Option<&Given<'_>>,
-    own: Region,
-) -> Vec<i32> {
-    let apron = recipe.apron(0);
-    let around = own.grown(apron);
-    let window = region_of(&recipe.config, &recipe.features, given, around);
-    let inside = |row: &[i32]| row[apron as usize..(apron + own.width) as usize].to_vec();
-    let rows = window.chunks_exact(around.width as usize).skip(apron as usize).take(own.width as usize);
-    let origins: Vec<i32> = rows.flat_map(inside).collect();
-    let eroded = finish(recipe, around.width as usize, &[], window);
-    let eroded = ErodedAt { heights: &eroded, width: own.width as usize, corner: 0 };
-    limit::reference::limit(&origins, eroded, limit.fixed_depth())
-}
-
 /// Despikes and erodes a window. `injected` lists (column, row) of the window's injected points, sorted by row.
-fn finish(recipe: &Recipe, mut width: usize, injected: &[(u32, u32)], mut window: Vec<i32>) -> Vec<i32> {
+pub(crate) fn finish(
+    recipe: &Recipe,
+    mut width: usize,
+    injected: &[(u32, u32)],
+    mut window: Vec<i32>,
+) -> Vec<i32> {
     if let Some(despike) = recipe.despike {
         window = despike::reference::despike(&window, width, despike.fixed_threshold(), |x, y| {
             injected.binary_search_by_key(&(y as u32, x as u32), |(column, row)| (*row, *column)).is_ok()

@@ -77,6 +77,7 @@ impl Regions {
 
 impl Region {
     /// The region with `apron` more samples on every side.
+    #[cfg(feature = "gpu")]
     pub(crate) fn grown(self, apron: u32) -> Self {
         let first = self.first.map(|first| first - i64::from(apron));
         Self { first, width: self.width + 2 * apron, ..self }

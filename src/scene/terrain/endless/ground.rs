@@ -10,10 +10,11 @@ use super::hole::TerrainHole;
 use crate::scene::object_kind::UnitRay;
 use crate::scene::ray::SurfaceHit;
 use crate::terrain::config::TerrainConfig;
-use crate::terrain::field::{eroded_region_of, region, region_of};
+use crate::terrain::field::{finish, region, region_of};
 use crate::terrain::ground::Ground;
 use crate::terrain::lattice::Given;
 use crate::terrain::limit::ErosionLimit;
+use crate::terrain::limit::reference::{ErodedAt, limit as limited};
 use crate::terrain::mesh::GroundPoint;
 use crate::terrain::morph::Morph;
 use crate::terrain::morph::reference::morph;
@@ -153,7 +154,7 @@ impl FinestGround {
             return Ok(Some(morph(&from, &to, time.fixed_time())));
         }
         let finest = |given: Option<&Given<'_>>| match self.erosion {
-            Some(limit) => eroded_region_of(&self.recipe, limit, given, samples),
+            Some(limit) => eroded_region(&self.recipe, limit, given, samples),
             None => region_of(config, features, given, samples),
         };
         let around = samples.grown(self.recipe.apron(0));
@@ -187,4 +188,19 @@ impl FinestGround {
         }
         Ok(Some(patches))
     }
+}
+
+/// Heights of a region of `seamless` terrain at its samples' own resolution, after the recipe's erosion, which moves heights by at most
+/// `limit`, with given heights before erosion as for [`region_of`]. The region must be valid with [`Recipe::apron`] samples around it.
+/// The recipe must have no despiking.
+fn eroded_region(recipe: &Recipe, limit: ErosionLimit, given: Option<&Given<'_>>, own: Region) -> Vec<i32> {
+    let apron = recipe.apron(0);
+    let around = own.grown(apron);
+    let window = region_of(&recipe.config, &recipe.features, given, around);
+    let inside = |row: &[i32]| row[apron as usize..(apron + own.width) as usize].to_vec();
+    let rows = window.chunks_exact(around.width as usize).skip(apron as usize).take(own.width as usize);
+    let origins: Vec<i32> = rows.flat_map(inside).collect();
+    let eroded = finish(recipe, around.width as usize, &[], window);
+    let eroded = ErodedAt { heights: &eroded, width: own.width as usize, corner: 0 };
+    limited(&origins, eroded, limit.fixed_depth())
 }

@@ -15,7 +15,7 @@ use relievo::ops::lod::{
     BLOCK, Depth, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, NO_OBJECT, OBJECT_LEVELS,
     OBJECT_LISTS, SceneInstance, SelectView, VIEW_CAMERAS, instance_flags_word, planes,
 };
-use relievo::shared::lod::criterion::CRITERION_MAGNIFICATION;
+use relievo::shared::lod::criterion::{CRITERION_BOX, CRITERION_MAGNIFICATION};
 use relievo::shared::lod::object::{FADE_PROGRESS, NO_RANK, object_flags_word};
 use relievo::shared::lod::transition::{TRANSITION_ALPHA, TRANSITION_DITHER, TRANSITION_GEOMORPH};
 
@@ -47,12 +47,15 @@ impl Blocks {
             let kind = index as u32 + case;
             let transition = kind % (TRANSITION_ALPHA + 1);
             let is_timed = u32::from(case % 2 == 1 && transition >= TRANSITION_DITHER);
+            let criterion = (kind + case) % (CRITERION_MAGNIFICATION + 1);
+            // A long box, whose near faces appear larger than its far ones.
+            let half_size = if criterion == CRITERION_BOX { [5.6, 0.8, 0.3] } else { [0.7, 0.2, 0.4] };
             let flags = object_flags_word(
                 u32::from(index != 2),
                 u32::from(kind % 3 == 2),
                 is_timed,
                 transition,
-                (kind + case) % (CRITERION_MAGNIFICATION + 1),
+                criterion,
             );
             let threshold = |level: usize| match level {
                 0 if transition != TRANSITION_GEOMORPH => 0.0,
@@ -76,7 +79,7 @@ impl Blocks {
                 motion: if kind % 2 == 1 { 0.3 } else { 0.0 },
                 point: [0.3, -0.2, 0.1],
                 periphery: if kind % 4 == 3 { 0.5 } else { 0.0 },
-                half_size: [0.7, 0.2, 0.4],
+                half_size,
                 rank: kind % (NO_RANK + 1),
                 fade_begin: 0.01,
                 fade_end: 0.2,
