@@ -15,7 +15,7 @@ use relievo::ops::lod::{
     BLOCK, Depth, INSTANCE_ALIVE, INSTANCE_CASTS, LodCamera, LodObject, NO_OBJECT, OBJECT_LEVELS,
     OBJECT_LISTS, SceneInstance, SelectView, VIEW_CAMERAS, instance_flags_word, planes,
 };
-use relievo::shared::lod::criterion::{CRITERION_BOX, CRITERION_MAGNIFICATION};
+use relievo::shared::lod::criterion::CRITERION_MAGNIFICATION;
 use relievo::shared::lod::object::{FADE_PROGRESS, NO_RANK, object_flags_word};
 use relievo::shared::lod::transition::{TRANSITION_ALPHA, TRANSITION_DITHER, TRANSITION_GEOMORPH};
 
@@ -23,6 +23,9 @@ use crate::cases::animation::Draw;
 
 /// The cell of random views, around which random instances lie.
 pub(crate) const CELL: IVec3 = IVec3::new(5, 0, -2_000_000);
+
+/// The eye of random views, in their cell.
+pub(crate) const EYE: Vec3 = Vec3::new(120.0, 25.0, 200.0);
 
 /// The numbers of blocks of objects in scenes.
 pub(crate) const SIZES: [&[u32]; 4] = [&[1], &[1, 2], &[3, 0, 1, 5], &[17, 1, 16, 40]];
@@ -47,15 +50,12 @@ impl Blocks {
             let kind = index as u32 + case;
             let transition = kind % (TRANSITION_ALPHA + 1);
             let is_timed = u32::from(case % 2 == 1 && transition >= TRANSITION_DITHER);
-            let criterion = (kind + case) % (CRITERION_MAGNIFICATION + 1);
-            // A long box, whose near faces appear larger than its far ones.
-            let half_size = if criterion == CRITERION_BOX { [5.6, 0.8, 0.3] } else { [0.7, 0.2, 0.4] };
             let flags = object_flags_word(
                 u32::from(index != 2),
                 u32::from(kind % 3 == 2),
                 is_timed,
                 transition,
-                criterion,
+                (kind + case) % (CRITERION_MAGNIFICATION + 1),
             );
             let threshold = |level: usize| match level {
                 0 if transition != TRANSITION_GEOMORPH => 0.0,
@@ -79,7 +79,7 @@ impl Blocks {
                 motion: if kind % 2 == 1 { 0.3 } else { 0.0 },
                 point: [0.3, -0.2, 0.1],
                 periphery: if kind % 4 == 3 { 0.5 } else { 0.0 },
-                half_size,
+                half_size: [0.7, 0.2, 0.4],
                 rank: kind % (NO_RANK + 1),
                 fade_begin: 0.01,
                 fade_end: 0.2,
@@ -206,10 +206,9 @@ pub(crate) fn view(
 /// # Errors
 /// None in practice: the matrices are checked like any other.
 pub(crate) fn frame() -> Result<[(&'static str, SelectView); 4], InputError> {
-    let eye = Vec3::new(120.0, 25.0, 200.0);
     let ahead =
-        view(look(eye, Vec3::new(0.3, -0.1, -1.0)), perspective(0.5, 1.4, 0.1, false, 0.0), false, &[])?;
-    let aside = view(look(eye, Vec3::X), perspective(0.3, 1.4, 0.3, true, 0.2), true, &[])?;
+        view(look(EYE, Vec3::new(0.3, -0.1, -1.0)), perspective(0.5, 1.4, 0.1, false, 0.0), false, &[])?;
+    let aside = view(look(EYE, Vec3::X), perspective(0.3, 1.4, 0.3, true, 0.2), true, &[])?;
     let down = look(Vec3::new(128.0, 90.0, 128.0), Vec3::new(0.2, -1.0, 0.1));
     let shadow = view(down, parallel(150.0, 120.0), false, &[ahead.cameras[0], aside.cameras[0]])?;
     Ok([

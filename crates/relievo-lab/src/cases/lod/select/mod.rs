@@ -17,7 +17,7 @@ use relievo::shared::lod::object::{
 };
 use relievo::shared::lod::view::POSITION_SLACK;
 
-use crate::cases::lod::{Blocks, CELL, SIZES, frame, random_instances};
+use crate::cases::lod::{Blocks, CELL, EYE, SIZES, frame, random_instances};
 use crate::cases::measure;
 use crate::harness::compare::{Comparison, Judgement, each};
 use crate::harness::poison::{POISON, Poisoned};
@@ -78,6 +78,15 @@ impl Scene {
         let mut instances = random_instances(case, BLOCK as usize * blocks.block_objects.len());
         let hidden = instances.iter_mut().enumerate().filter(|(at, _)| is_hidden(*at));
         hidden.for_each(|(_, instance)| instance.flags &= !INSTANCE_ALIVE);
+        // A third of the boxes is near the eye, where their near faces appear larger than their far ones.
+        let is_box = |at: usize| {
+            let object = blocks.object_of(at);
+            object.is_some_and(|object| object_flags_criterion(object.flags) == CRITERION_BOX)
+        };
+        for (_, instance) in instances.iter_mut().enumerate().filter(|(at, _)| at % 3 == 0 && is_box(*at)) {
+            instance.cell = CELL.to_array();
+            instance.offset = EYE.lerp(instance.offset.into(), 0.1).to_array();
+        }
         Self { blocks, instances }
     }
 
