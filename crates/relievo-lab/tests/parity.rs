@@ -275,7 +275,7 @@ fn a_kernel_that_computes_something_else_fails() {
     let heights = Buffer::from_slice(&gpu, "heights", &[POISON as i32; 64]).expect("uploaded");
     let buffers = MorphBuffers { from: &from, to: &to, heights: &heights };
     let job = HeightMorphPass::new(&gpu).expect("compiled").prepare(&gpu, buffers).expect("prepared");
-    job.set(&mut &gpu, Morph { time: 0.5 }).expect("set");
+    job.set(&gpu, Morph { time: 0.5 }).expect("set");
     gpu.run("test", |encoder| job.record(encoder)).expect("run");
     let actual = heights.read_blocking(&gpu).expect("read");
     assert!(exact(&actual, &[32_768; 64]).holds);

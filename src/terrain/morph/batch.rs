@@ -57,7 +57,7 @@ impl MorphedFields {
 
     /// Sets the time of the blend for the next submission; the upload goes through `to`.
     pub(crate) fn stage(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
-        self.jobs.iter().try_for_each(|job| job.set(to, morph))
+        self.jobs.iter().try_for_each(|job| job.set_through(to, morph))
     }
 
     /// Records the blend of all parts at the time that was set.

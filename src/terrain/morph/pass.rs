@@ -76,8 +76,16 @@ impl MorphJob {
     ///
     /// # Errors
     /// [`InputError`] for a time outside 0..=1; [`GpuError`].
-    pub fn set(&self, to: &mut impl Upload, morph: Morph) -> Result<(), Error> {
+    pub fn set(&self, gpu: &Gpu, morph: Morph) -> Result<(), Error> {
+        self.set_through(&mut &*gpu, morph)
+    }
+
+    /// As [`MorphJob::set`], but writes through `upload`.
+    ///
+    /// # Errors
+    /// The same errors as [`MorphJob::set`].
+    pub fn set_through(&self, upload: &mut impl Upload, morph: Morph) -> Result<(), Error> {
         morph.validate()?;
-        Ok(to.uniform(&self.uniform, &MorphParams { time: morph.fixed_time(), ..self.params })?)
+        Ok(upload.uniform(&self.uniform, &MorphParams { time: morph.fixed_time(), ..self.params })?)
     }
 }

@@ -74,9 +74,7 @@ impl Elevation {
     /// Replaces the injected heights. Returns those that the generator injects: those of places that are no samples of the map.
     pub fn set_features(&mut self, features: &Features) -> Features {
         let (samples, step) = (self.info.layout.samples(), self.spacing << self.coarser());
-        let is_own = |at: [i64; 2]| {
-            (0..2).all(|axis| at[axis] % step == 0 && samples[axis].contains(&(at[axis] / step)))
-        };
+        let is_own = |at: [i64; 2]| (0..2).all(|i| at[i] % step == 0 && samples[i].contains(&(at[i] / step)));
         let [own, other] = features.divided(is_own);
         self.features = own;
         other

@@ -526,7 +526,7 @@ impl Pool {
         holes: &[TerrainHole],
     ) -> Result<(), Error> {
         if let Some(blend) = self.blend.as_ref().filter(|blend| blend.is_due) {
-            blend.job.set(staged, time)?;
+            blend.job.set_through(staged, time)?;
         }
         for Batch { heights, level, job, nodes, cut } in &self.batches {
             let job = &self.jobs[*heights as usize][*level][*job];

@@ -26,7 +26,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let job =
                 pass.prepare(gpu, MorphBuffers { from: &buffers[0], to: &buffers[1], heights: &heights })?;
             let params = Morph { time };
-            job.set(&mut &*gpu, params)?;
+            job.set(gpu, params)?;
             heights.write(gpu, &vec![POISON as i32; from.len()])?;
             gpu.submit("verify", |encoder| {
                 job.record(encoder);
@@ -52,7 +52,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let buffers = MorphBuffers { from: &buffers[0], to: &buffers[1], heights: &heights };
     let job = HeightMorphPass::new(gpu)?.prepare(gpu, buffers)?;
     let params = Morph { time: 0.3 };
-    job.set(&mut &*gpu, params)?;
+    job.set(gpu, params)?;
     measure(
         bench,
         "257x257 batch 64",
