@@ -245,7 +245,8 @@ fn a_place_has_one_picture() {
 }
 
 /// Erosion of an elevation map, of the terrain's own spacing and of a coarser one, with injected heights on it and around it: inside the
-/// map, across its border, and around it, the host has the heights of the terrain without erosion, eroded by the reference, and the device draws them.
+/// map, across its border, and around it, the host has the heights of the terrain without erosion, eroded by the reference, and the
+/// device draws them.
 #[test]
 fn an_elevation_map_is_eroded() {
     type Source = fn(TerrainRecipe) -> TerrainSource;

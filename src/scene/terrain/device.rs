@@ -94,7 +94,7 @@ pub(super) fn zones_of(gpu: &Gpu, source: &TerrainSource) -> Result<Materials, E
     Materials::new(gpu, zones, source.textures.as_deref().unwrap_or(&built_in))
 }
 
-/// What drawing needs to know about a terrain with `size` samples along an edge of a patch, in rows of `width` heights.
+/// The parameters with which a terrain is drawn. A patch has `size` samples along an edge, and its rows have `width` heights.
 pub(super) fn params_of(
     source: &TerrainSource,
     (width, size): (u32, u32),

@@ -130,9 +130,8 @@ impl TerrainSource {
 
     /// Gives endless terrain heights of the caller: an elevation map ([`ElevationTiles`](crate::terrain::elevation::ElevationTiles)), or
     /// tiles that arrive one by one. Around the map and between its samples, heights are generated from the configuration. Injected
-    /// heights of the recipe lie on the map. Nodes whose
-    /// heights are on their way are not drawn yet; coarser ones are. [`Scene::ground`](crate::scene::Scene::ground) answers `None`
-    /// there.
+    /// heights of the recipe lie on the map. Nodes whose heights are on their way are not drawn yet; coarser ones are.
+    /// [`Scene::ground`](crate::scene::Scene::ground) answers `None` there.
     #[must_use]
     pub fn with_elevation(self, elevation: Arc<dyn ElevationSource>) -> Self {
         Self { elevation: Some(elevation), ..self }

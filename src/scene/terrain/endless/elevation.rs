@@ -211,8 +211,9 @@ impl Elevation {
         high - low + added + deviation
     }
 
-    /// What lies below a region of a node. `plain` are the map's heights for it, without those that are injected, `cells` the node's
-    /// cells, without its margin, and `offsets` those of the heights that the generator injects. `None` while tiles are on their way.
+    /// Bounds the distance of finer heights from a region of a node; `None` while tiles are on their way. `plain` are the map's heights
+    /// of the region, without those that are injected. `cells` are the node's, without its margin. `offsets` are those of the heights
+    /// that the generator injects.
     ///
     /// # Errors
     /// Those of the source; [`InputError`] for a tile of another size.

@@ -657,7 +657,8 @@ impl Endless {
         Ok(())
     }
 
-    /// What the elevation map gives to a node, if it reaches it; `None` while heights are on their way.
+    /// The heights that the elevation map gives to a node: `Some(None)` if the map does not reach the node, and `None` while heights are
+    /// on their way.
     fn given_to(&mut self, node: Node) -> Result<Option<Option<NodeElevation>>, Error> {
         let Some(map) = &self.elevation else { return Ok(Some(None)) };
         let region = self.grid.region_of(node);

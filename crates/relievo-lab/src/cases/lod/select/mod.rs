@@ -205,8 +205,7 @@ impl Range {
         // The part of itself by which a length on the screen changes.
         let is_box = object_flags_criterion(object.flags) == CRITERION_BOX;
         let part_of = |camera: &LodCamera| {
-            let box_reach = Vec3::from(object.half_size).length() + Vec3::from(object.point).length();
-            let reach = if is_box { radius.max(scale * box_reach) + radius } else { 0.0 };
+            let reach = if is_box { radius } else { 0.0 };
             let depth = camera.ahead.dot(center - camera.eye);
             match camera.perspective == 0.0 || !is_box && depth + slack < camera.near {
                 true => 0.0,
