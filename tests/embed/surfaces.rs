@@ -71,7 +71,9 @@ fn compared(triangles: &[Triangle], camera: &Camera, mut check: impl FnMut(usize
 fn surfaces_are_those_of_traced_rays() {
     let gpu = device();
     let (mut scene, mut view, triangles, [_, object]) = cubes(&gpu);
-    for format in [TargetFormat::surface(), TargetFormat::surface().reversed()] {
+    let mut floats = TargetFormat::surface();
+    floats.color[1] = Some(wgpu::TextureFormat::Rgba16Float.into());
+    for format in [TargetFormat::surface(), TargetFormat::surface().reversed(), floats] {
         let raw = Raw::new(&gpu, format, SIZE);
         let mut camera = camera();
         if raw.format.depth.is_some_and(|depth| depth.reversed) {

@@ -38,28 +38,28 @@ struct FeatureWord {
 // Heights of the features, in 1/65536 world units.
 @group(1) @binding(1) var<storage, read> feature_heights: array<i32>;
 
-// Word of the grid that contains a point. A point beyond the grid gets a word of the grid's rim.
+// Word of the grid that contains a point. A point beyond the grid gets a word of the grid's rim; nothing that is stored depends on
+// such a point.
 fn feature_word(grid: FeatureGrid, window: u32, at: vec2<i32>) -> FeatureWord {
     let place = vec2<u32>(clamp(at + vec2<i32>(1), vec2<i32>(0), vec2<i32>(i32(grid.width) + 1)));
     return feature_words[
         grid.start + window * grid.words_per_window + place.y * grid.words_per_row + place.x / 32u];
 }
 
-// Bit of a point in its word, as a mask; 0 beyond the grid.
-fn feature_bit(grid: FeatureGrid, at: vec2<i32>) -> u32 {
-    let place = vec2<u32>(at + vec2<i32>(1));
-    return select(0u, 1u << (place.x % 32u), all(place < vec2<u32>(grid.width + 2u)));
+// Bit of a point in its word, as a mask.
+fn feature_bit(at: vec2<i32>) -> u32 {
+    return 1u << (u32(at.x + 1) % 32u);
 }
 
 // Whether a point of a window has a feature.
 fn has_feature(grid: FeatureGrid, window: u32, at: vec2<i32>) -> bool {
-    return (feature_word(grid, window, at).mask & feature_bit(grid, at)) != 0u;
+    return (feature_word(grid, window, at).mask & feature_bit(at)) != 0u;
 }
 
 // Height of a point after injection. `height` is the computed height.
 fn injected(grid: FeatureGrid, window: u32, at: vec2<i32>, height: i32) -> i32 {
     let word = feature_word(grid, window, at);
-    let bit = feature_bit(grid, at);
+    let bit = feature_bit(at);
     if (word.mask & bit) == 0u {
         return height;
     }

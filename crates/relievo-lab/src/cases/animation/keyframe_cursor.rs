@@ -3,8 +3,10 @@
 use std::hint::black_box;
 
 use relievo::Error;
+use relievo::asset::clip::{BoneKeys, Clip, Interpolation, Keys};
 use relievo::asset::keyframe::KeyframeCursor;
 use relievo::ops::animation::active::Active;
+use relievo::ops::animation::clip_set::ClipSet;
 use relievo::ops::animation::crowd::{ClipBuffers, Crowd};
 use relievo::ops::animation::gate_state::GateState;
 use relievo::ops::animation::instance::{Instance, Wrap};
@@ -15,7 +17,7 @@ use relievo::ops::animation::order::Order;
 
 use crate::cases::animation::edges::{ELAPSED, edges};
 use crate::cases::animation::scene::{CROWDS, ELAPSED as MEASURED, Scene};
-use crate::cases::animation::{SIZES, random_crowd, random_instances};
+use crate::cases::animation::{SIZES, random_crowd, random_instances, random_skeleton};
 use crate::cases::measure;
 use crate::harness::compare::Comparison;
 use crate::harness::poison::{POISON, Poisoned};
@@ -54,6 +56,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
     }
     at_edges(cases, &pass).await?;
     nowhere(cases, &pass).await?;
+    far_away(cases, &pass).await?;
     of_a_list(cases, &pass).await
 }
 
@@ -165,6 +168,32 @@ async fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(),
         [&crowd.cursors.read(gpu).await?[..references.len()], &references, &known].map(clip_clocks);
     let (actual, known) = ([actual, references].concat(), known.repeat(2));
     cases.add("nowhere in the clip", compare::absolute(&actual, &known, KEYFRAME_CURSOR_BOUND));
+    Ok(())
+}
+
+/// Compares loops of 8 s after millions of turns, which an f32 still resolves to 2 s.
+async fn far_away(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let skeleton = random_skeleton(0, 1)?;
+    let values = vec![[0.0; 4], [1.0, 0.0, 0.0, 0.0]];
+    let keys = Keys { times: vec![0.0, 8.0], values, interpolation: Interpolation::Linear };
+    let bone = BoneKeys { translation: Some(keys), ..BoneKeys::default() };
+    let set = ClipSet::new(&[&Clip::new("eight seconds", &skeleton, &[bone], 0.0)?])?;
+    let seconds = [20_000_006.0, -20_000_006.0, 16_777_218.0];
+    let instances = seconds.map(|start| Instance::new(0, Wrap::Loop, start, 0.0));
+    let still = [Instance::new(0, Wrap::Loop, 0.0, 0.0); 3];
+    let (clips, crowd) = (ClipBuffers::new(gpu, &set)?, Crowd::new(gpu, &set, &still)?);
+    crowd.instances.write(gpu, &instances)?;
+    let job = pass.prepare(gpu, &clips, &crowd)?;
+    job.set(gpu, 0.0)?;
+    gpu.submit("verify", |encoder| job.record(encoder))?;
+    let fractions = |cursors: &[KeyframeCursor]| -> Vec<f32> {
+        cursors.iter().map(|cursor| cursor.key as f32 + cursor.fraction).collect()
+    };
+    let references = fractions(&cursors(&set, &instances, 0.0));
+    let actual = [fractions(&crowd.cursors.read(gpu).await?[..references.len()]), references].concat();
+    let known = [0.75, 0.25, 0.25].repeat(2);
+    cases.add("after millions of turns", compare::absolute(&actual, &known, KEYFRAME_CURSOR_BOUND));
     Ok(())
 }
 
