@@ -53,10 +53,10 @@ fn small(recipe: TerrainRecipe) -> TerrainSource {
     })
 }
 
-/// The finest heights, eroded patch by patch, and the patches that are known.
+/// The finest heights without erosion and with it, eroded patch by patch, and the patches that are known.
 struct Truth {
     recipes: [TerrainRecipe; 2],
-    patches: Mutex<HashMap<[i32; 2], Arc<Vec<i32>>>>,
+    patches: Mutex<HashMap<[i32; 2], Arc<[Vec<i32>; 2]>>>,
     /// Number of heights that erosion would move farther than it may.
     limited: AtomicU32,
 }
@@ -71,35 +71,53 @@ impl Truth {
         Self { recipes: [plain, recipe], patches: Mutex::default(), limited: AtomicU32::new(0) }
     }
 
-    fn patch(&self, patch: [i32; 2]) -> Arc<Vec<i32>> {
+    fn patch(&self, patch: [i32; 2]) -> Arc<[Vec<i32>; 2]> {
         if let Some(known) = self.patches.lock().expect("whole").get(&patch) {
             return known.clone();
         }
         let [plain, eroded] =
             self.recipes.each_ref().map(|recipe| field(recipe, &[patch], 0).expect("valid").remove(0));
         let most = (DEPTH * 65_536.0) as i32;
-        let limited = |(plain, eroded): (i32, i32)| {
+        let limited = |(plain, eroded): (&i32, i32)| {
             if (eroded - plain).abs() > most {
                 self.limited.fetch_add(1, Ordering::Relaxed);
             }
             plain + (eroded - plain).clamp(-most, most)
         };
-        let heights = Arc::new(plain.into_iter().zip(eroded).map(limited).collect::<Vec<_>>());
+        let eroded = plain.iter().zip(eroded).map(limited).collect();
+        let heights = Arc::new([plain, eroded]);
         self.patches.lock().expect("whole").insert(patch, heights.clone());
         heights
     }
 
-    fn at(&self, x: f64, z: f64) -> f64 {
-        between(&self.recipes[0].config, [x, z], |region| {
-            let sample = |dx: i64, dz: i64| {
-                let [column, row] = [region.first[0] + dx, region.first[1] + dz];
-                let patch = [column, row].map(|at| at.div_euclid(64) as i32);
-                let [column, row] = [column, row].map(|at| at.rem_euclid(64) as usize);
-                self.patch(patch)[row * 65 + column]
-            };
-            vec![sample(0, 0), sample(1, 0), sample(0, 1), sample(1, 1)]
-        })
+    /// The height of a sample without erosion and with it.
+    fn sample(&self, [column, row]: [i64; 2]) -> [i32; 2] {
+        let patch = [column, row].map(|at| at.div_euclid(64) as i32);
+        let [column, row] = [column, row].map(|at| at.rem_euclid(64) as usize);
+        self.patch(patch).each_ref().map(|heights| heights[row * 65 + column])
     }
+
+    fn at(&self, x: f64, z: f64) -> f64 {
+        height([x, z], &|sample| self.sample(sample)[1])
+    }
+
+    /// The height on the way from the ground without erosion to the eroded one.
+    fn at_time(&self, time: f64, x: f64, z: f64) -> f64 {
+        height([x, z], &|sample| blended(self.sample(sample), time))
+    }
+}
+
+/// The height of a place on the triangles between samples.
+fn height(place: [f64; 2], of: &dyn Fn([i64; 2]) -> i32) -> f64 {
+    between(&config(), place, |region| {
+        let [column, row] = region.first;
+        [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, z]| of([column + x, row + z])).to_vec()
+    })
+}
+
+/// The height at a time on the way from one to another.
+fn blended([from, to]: [i32; 2], time: f64) -> i32 {
+    from + ((i64::from(to - from) * (time * 65_536.0).round() as i64) >> 16) as i32
 }
 
 /// Near and far, what is drawn is within a pixel of the eroded ground, which is not the ground without erosion.
@@ -178,6 +196,66 @@ fn field_height(x: f64, z: f64) -> f64 {
     between(&config, [x, z], |region| {
         relievo::ops::terrain::field::region(&config, &Default::default(), region)
     })
+}
+
+/// Ground erodes while the time runs. At each time, what is drawn is within a pixel of the heights on the way from ground without erosion
+/// to eroded ground, and so is the host's ground; no node is made because of the time. So with small nodes, which share eroded ground.
+#[test]
+fn ground_erodes_as_time_goes_by() {
+    let truth = Truth::new();
+    for source in [source, small] {
+        let plain = TerrainRecipe::new(config());
+        let aging = source(plain).with_target(recipe(), TerrainMorph { time: 0.0 });
+        let mut world = World::of(&aging, [96, 54]);
+        let camera = world.above([10.0, 20.0], 3.0);
+        world.view.set(camera).expect("valid");
+        world.settle();
+        for time in [0.0, 0.5, 1.0] {
+            world.scene.morph_terrain(world.land, TerrainMorph { time }).expect("a target");
+            let drawn = world.positions(&camera);
+            let statistics = world.scene.terrain_statistics(world.land).expect("endless");
+            assert_eq!((statistics.made, statistics.ready), (0, 1.0), "{time}: {statistics:?}");
+            assert_eq!(holes(&world, &camera, &drawn), 0, "at {time}");
+            let some = some(&drawn, 7);
+            let off = |time: f64| largest(&offsets(&|x, z| truth.at_time(time, x, z), &camera, &some));
+            let (own, ends) = (off(time), [off(0.0), off(1.0)]);
+            println!("at {time}: {own} px off, {ends:?} from both ends");
+            assert!(own <= 1.0 + ROUNDING, "{own} px at {time}");
+            assert!(ends[0].max(ends[1]) > 1.05, "{ends:?} px at {time}");
+            for at in 0..20 {
+                let (x, z) = (37.3 * f64::from(at) + 0.25, 40.0 - 11.7 * f64::from(at));
+                let point = world.scene.ground(world.land, x, z).expect("valid").expect("ground");
+                assert!((point.height - truth.at_time(time, x, z)).abs() < 1e-6, "{time}: {x} {z}");
+            }
+        }
+    }
+}
+
+/// Both recipes are eroded, each by its own erosion.
+#[test]
+fn each_end_has_its_own_erosion() {
+    let other = TerrainConfig { scale_factor: 75.0, seed: "the other end".to_owned(), ..config() };
+    let thermal = Some(Thermal { iterations: 8, talus: 2.0 });
+    let other = TerrainRecipe { thermal, ..TerrainRecipe::new(other) };
+    let truths = [recipe(), other.clone()].map(Truth::of);
+    let both = source(recipe()).with_target(other, TerrainMorph::default());
+    let mut world = World::of(&both, [96, 54]);
+    for time in [0.0, 0.3, 1.0] {
+        world.scene.morph_terrain(world.land, TerrainMorph { time }).expect("a target");
+        let camera = world.above([10.0, 20.0], 3.0);
+        world.view.set(camera).expect("valid");
+        world.settle();
+        let drawn = world.positions(&camera);
+        assert_eq!(holes(&world, &camera, &drawn), 0, "at {time}");
+        let some = some(&drawn, 7);
+        let [without, off] = [0, 1].map(|end| {
+            let of = |sample| blended(truths.each_ref().map(|truth| truth.sample(sample)[end]), time);
+            largest(&offsets(&|x, z| height([x, z], &of), &camera, &some))
+        });
+        println!("at {time}: {off} px off, {without} from the ground without erosion");
+        assert!(off <= 1.0 + ROUNDING, "{off} px at {time}");
+        assert!(without > 1.2, "{without} px at {time}");
+    }
 }
 
 /// While nodes are missing, some are eroded and others beside them are not, and yet the ground is closed: below it there is no sky.

@@ -155,8 +155,8 @@ fn targets_that_do_not_fit_are_refused() {
     assert_eq!(refused(of(TerrainConfig { patch_size: 33, ..target() })), "target.patch_size");
     let despike = Some(Despike { threshold: 1.0 });
     assert_eq!(refused(TerrainRecipe { despike, ..of(target()) }), "target.recipe");
-    let thermal = Some(relievo::scene::Thermal { iterations: 3, talus: 20.0 });
-    assert_eq!(refused(TerrainRecipe { thermal, ..of(target()) }), "target.recipe");
+    let thermal = Some(relievo::scene::Thermal { iterations: 129, talus: 20.0 });
+    assert_eq!(refused(TerrainRecipe { thermal, ..of(target()) }), "target.iterations");
     let land = scene.add_terrain(&TerrainSource::endless(config())).expect("added");
     let without = scene.morph_terrain(land, TerrainMorph::default()).expect_err("refused").to_string();
     assert!(without.contains("with_target"), "{without}");

@@ -217,8 +217,8 @@ impl TerrainSource {
 
     /// Adds a second recipe, towards which the heights are blended. Its samples must be in the same places as the
     /// samples of the first recipe. `morph` is the initial blend; [`Scene::morph_terrain`](crate::scene::Scene::morph_terrain)
-    /// changes it. Zones and textures are taken from the first recipe. Endless terrain with a target takes three times the memory for
-    /// heights, none for finer normals, and no elevation map; both recipes have the same `coarse_levels`.
+    /// changes it. Each recipe has its own erosion. Zones and textures are taken from the first recipe. Endless terrain with a target takes
+    /// three times the memory for heights, none for finer normals, and no elevation map; both recipes have the same `coarse_levels`.
     #[must_use]
     pub fn with_target(self, target: Recipe, morph: Morph) -> Self {
         Self { target: Some((Box::new(target), morph)), ..self }

@@ -10,7 +10,7 @@ use super::hole::TerrainHole;
 use crate::scene::object_kind::UnitRay;
 use crate::scene::ray::SurfaceHit;
 use crate::terrain::config::TerrainConfig;
-use crate::terrain::field::{finish, region, region_of};
+use crate::terrain::field::{finish, region_of};
 use crate::terrain::ground::Ground;
 use crate::terrain::lattice::Given;
 use crate::terrain::limit::ErosionLimit;
@@ -147,21 +147,19 @@ impl FinestGround {
 
     /// The heights of a region; `None` while heights of the elevation map are on their way.
     fn heights(&self, samples: Region) -> Result<Option<Vec<i32>>, InputError> {
-        let Recipe { config, features, .. } = &self.recipe;
+        let finest = |recipe: &Recipe, given: Option<&Given<'_>>| match self.erosion {
+            Some(limit) => eroded_region(recipe, limit, given, samples),
+            None => region_of(&recipe.config, &recipe.features, given, samples),
+        };
         if let Some((target, time)) = &self.target {
-            let [from, to] =
-                [&self.recipe, target].map(|recipe| region(&recipe.config, &recipe.features, samples));
+            let [from, to] = [&self.recipe, target].map(|recipe| finest(recipe, None));
             return Ok(Some(morph(&from, &to, time.fixed_time())));
         }
-        let finest = |given: Option<&Given<'_>>| match self.erosion {
-            Some(limit) => eroded_region(&self.recipe, limit, given, samples),
-            None => region_of(config, features, given, samples),
-        };
         let around = samples.grown(self.recipe.apron(0));
         let Some(map) = self.elevation.as_ref().filter(|map| map.reaches(around)) else {
-            return Ok(Some(finest(None)));
+            return Ok(Some(finest(&self.recipe, None)));
         };
-        let heights = map.given(config, around, |given| finest(Some(given)));
+        let heights = map.given(&self.recipe.config, around, |given| finest(&self.recipe, Some(given)));
         heights.map_err(|error| match error {
             Error::Input(error) => error,
             other => InputError::new("elevation", "a tile", format!("must load: {other}")),
@@ -174,7 +172,8 @@ impl FinestGround {
         if !patches.ground.contains(patch) {
             let first = patch.map(|index| i64::from(index) * (i64::from(self.patch.patch_size) - 1));
             let samples = Region { first, width: self.patch.patch_size, coarser: 0 };
-            if samples.grown(self.recipe.apron(0)).validate(&self.recipe.config).is_err() {
+            let reach = self.target.as_ref().map_or(0, |(target, _)| target.apron(0));
+            if samples.grown(reach.max(self.recipe.apron(0))).validate(&self.recipe.config).is_err() {
                 return Ok(None);
             }
             let Some(heights) = self.heights(samples)? else { return Ok(None) };

@@ -52,7 +52,7 @@ use elevation::{Beyond, Elevation, NodeElevation};
 use ground::FinestGround;
 pub use hole::{SampleMask, TerrainHole};
 use in_view::{EndlessInView, ViewTable};
-use pool::{BATCH, FoundFacts, Grid, NewNode, Pool, PoolSize};
+use pool::{BATCH, FoundFacts, Grid, NewNode, Pool, PoolSize, Recipes};
 
 /// Number of parts along an edge of a node in which the displacement that a view allows is found. A smaller part allows more.
 const PARTS: u32 = 4;
@@ -97,7 +97,7 @@ pub struct EndlessLimits {
     /// Largest distance in world units by which erosion may move a height, at most 1000; it has no effect without erosion.
     /// At least 0.001. Default: 4. Ground is eroded where a view allows less than twice as much; the number of nodes there grows with the
     /// square. An eroded node takes as many passes over its finest heights as there are iterations, and twice the memory for heights.
-    /// Nodes less than four times as wide as there are iterations share 64 larger squares of eroded ground, 76 MB at most.
+    /// Nodes less than four times as wide as there are iterations share 64 larger squares of eroded ground, 76 MB at most for a recipe.
     pub erosion_depth: f64,
 }
 
@@ -218,8 +218,8 @@ struct Resident {
     made: u64,
     /// What lies below the heights from which the node is made.
     beyond: Beyond,
-    /// What the device found; `None` until it arrives.
-    found: Option<FoundFacts>,
+    /// What the device found about the own recipe's heights and the target's; `None` until it arrives.
+    found: Option<[FoundFacts; 2]>,
     facts: Option<Facts>,
 }
 
@@ -251,18 +251,20 @@ pub(in crate::scene) fn made(
     let recipe = &generated(recipe, &recipe.features, elevation.as_mut());
     let grid = Grid::new(&recipe.config, limits.node_size, elevation.is_some())?;
     pool::check(recipe, grid)?;
-    let target = source.target.as_ref().map(|(target, _)| &**target);
+    let recipes = Recipes::new(recipe, source);
+    let target = recipes.target;
     source.check_target()?;
     if let Some(target) = target {
         check_target(&recipe.config, target, grid).map_err(|error| error.below("target"))?;
         let bound = || "must not be given beside a target";
         InputError::check(elevation.is_none(), "elevation", "given", bound)?;
     }
-    let erosion = (recipe.apron(0) > 0).then_some(ErosionLimit { depth: limits.erosion_depth });
+    let erosion = recipes
+        .all()
+        .any(|recipe| recipe.apron(0) > 0)
+        .then_some(ErosionLimit { depth: limits.erosion_depth });
     if let Some(erosion) = erosion {
         erosion.validate().map_err(|error| InputError { path: "erosion_depth".to_owned(), ..error })?;
-        let bound = || "must have no erosion beside a target";
-        InputError::check(target.is_none(), "recipe", "erosion", bound)?;
     }
     let view_distance = limits.checked(&recipe.config)?;
     let mut instances = Instances::new(limits.capacity as usize);
@@ -276,7 +278,7 @@ pub(in crate::scene) fn made(
         map: elevation.as_ref().map(Elevation::coarser),
         erosion,
     };
-    let pool = Pool::new(gpu, (recipe, target), grid, size)?;
+    let pool = Pool::new(gpu, recipes, grid, size)?;
     let (chunks, draws) = drawn(gpu, layouts, source, (&pool, grid, capacity))?;
     let hidden = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
     for _ in 0..capacity {
@@ -487,8 +489,9 @@ impl Endless {
         for (node, resident) in &mut self.residents {
             if resident.found.is_none() && resident.made <= frame {
                 let needs_both = self.grid.is_eroded(self.size, node.level);
+                let is_there = |facts: &FoundFacts| !needs_both || facts.other.is_some();
                 let found = facts.get(resident.slot as usize).copied().flatten();
-                resident.found = found.filter(|found| !needs_both || found.other.is_some());
+                resident.found = found.filter(|found| found.iter().all(is_there));
                 known.extend(resident.found.map(|_| *node));
             }
         }
@@ -503,19 +506,22 @@ impl Endless {
         for node in nodes {
             let Some(resident) = self.residents.get_mut(node) else { continue };
             let beyond = resident.beyond;
-            let facts = resident.found.map(|found| {
-                let [own, other] = [Some(found.own), found.other]
-                    .map(|facts| FoundFacts { own: facts.unwrap_or(found.own), other: None });
-                let below =
-                    |facts: &FoundFacts| facts_of((config, &self.offsets), (grid, *node), facts, beyond);
-                if let Some(limit) = self.size.erosion {
-                    if !grid.is_eroded(self.size, node.level) {
-                        return below(&found).beside_eroded(limit.depth);
+            let of = |config: &TerrainConfig, offsets: &FeatureOffsets, FoundFacts { own, other }| {
+                let below = |own, other| {
+                    facts_of((config, offsets), (grid, *node), &FoundFacts { own, other }, beyond)
+                };
+                match (self.size.erosion, other) {
+                    (None, _) => below(own, other),
+                    (Some(limit), Some(eroded)) if grid.is_eroded(self.size, node.level) => {
+                        below(own, None).eroded(below(eroded, None), limit.depth)
                     }
-                    return below(&own).eroded(below(&other), limit.depth);
+                    (Some(limit), _) => below(own, None).beside_eroded(limit.depth),
                 }
-                let Some(((target, _), offsets)) = target else { return below(&found) };
-                below(&own).blended(facts_of((&target.config, offsets), (grid, *node), &other, beyond))
+            };
+            let facts = resident.found.map(|[own, other]| {
+                let own = of(config, &self.offsets, own);
+                let other = target.map(|((target, _), offsets)| of(&target.config, offsets, other));
+                other.map_or(own, |other| own.blended(other))
             });
             resident.facts = facts.or(resident.facts);
         }
@@ -581,7 +587,8 @@ impl Endless {
         let Some((_, current)) = &mut self.source.target else { return Err(super::without_target()) };
         if *current != morph {
             *current = morph;
-            self.ground = FinestGround::new(&self.recipe, (self.source.target.clone(), None), None)?;
+            let also = (self.source.target.clone(), self.size.erosion);
+            self.ground = FinestGround::new(&self.recipe, also, None)?;
             self.pool.blend_again();
         }
         Ok(())
@@ -886,7 +893,7 @@ impl Endless {
         fraction: f32,
     ) -> Result<Provided, Error> {
         let moved = self.choose(views, fraction)?;
-        self.pool.make(gpu, &self.recipe, &self.new)?;
+        self.pool.make(gpu, Recipes::new(&self.recipe, &self.source), &self.new)?;
         let placed = moved.into_iter().filter_map(|node| Some((node, self.residents.get(&node)?.slot)));
         let placed = placed.map(|(node, slot)| {
             let (placement, sphere) = self.placed(node)?;
@@ -962,8 +969,6 @@ fn check_target(config: &TerrainConfig, target: &Recipe, grid: Grid) -> Result<(
     target.validate(&[], 0)?;
     let levels = (target.config.coarse_levels, config.coarse_levels);
     InputError::check_same("coarse_levels", levels.0, levels.1, "as at time 0")?;
-    let bound = || "must have no erosion where terrain is endless";
-    InputError::check(target.apron(0) == 0, "recipe", "erosion", bound)?;
     pool::check(target, grid)
 }
 
@@ -1073,8 +1078,7 @@ impl ObjectKind for Endless {
         let MakeOn { gpu, layouts, .. } = target;
         Box::pin(async move {
             let capacity = self.statistics.capacity;
-            let target = self.source.target.as_ref().map(|(target, _)| &**target);
-            let pool = Pool::new(gpu, (&self.recipe, target), self.grid, self.size)?;
+            let pool = Pool::new(gpu, Recipes::new(&self.recipe, &self.source), self.grid, self.size)?;
             let (chunks, _) = drawn(gpu, layouts, &self.source, (&pool, self.grid, capacity))?;
             Ok(OnDevice { chunks, other: Box::new(pool) })
         })
@@ -1125,7 +1129,7 @@ impl ObjectKind for Endless {
             }
         }
         let time = self.source.target.as_ref().map_or_else(Morph::default, |(_, time)| *time);
-        self.pool.stage(staged, (&self.recipe, time), holes)
+        self.pool.stage(staged, (Recipes::new(&self.recipe, &self.source), time), holes)
     }
 
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {

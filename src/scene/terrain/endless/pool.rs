@@ -7,10 +7,10 @@ use super::eroded::{Cut, Erosion, ErosionJob, Source};
 use super::hole::TerrainHole;
 use crate::gpu::{Buffer, Gpu, Job, ReadbackRing, Staged, Upload as _};
 use crate::scene::FRAMES_IN_FLIGHT;
+use crate::scene::terrain::source::TerrainSource;
 use crate::shared::render::scene_terrain::TerrainPatch;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::cover::TILES_PERIOD;
-use crate::terrain::features::Features;
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::levels::{GivenHeights, lattice_region};
 use crate::terrain::limit::ErosionLimit;
@@ -57,39 +57,48 @@ pub(super) struct Pool {
     /// Normals of the nodes at twice their resolution; none of those of level 0, which are the finest.
     pub normals: Buffer<u32>,
     pub size: PoolSize,
-    facts: Buffer<u32>,
     ring: ReadbackRing<u64>,
     grid: Grid,
-    generator: RegionPass,
-    /// The mode in which the generator injects features.
-    injection: Option<FeatureMode>,
     pass: NodePass,
     /// `None` for nodes without normals, for which this pipeline is not compiled.
     normals_pass: Option<NodeNormalsPass>,
     heights: Buffer<i32>,
-    scratch: HeightScratch,
     /// Replaces generated heights by those of a map; `None` without a map.
     replace: Option<ReplacePass>,
-    /// Blends the heights with those of a target; `None` without a target.
+    /// The heights of each recipe.
+    ends: Vec<End>,
+    /// Blends the heights of both recipes; `None` without a target.
     blend: Option<Blend>,
-    /// Erodes the finest nodes; `None` without erosion.
-    erosion: Option<Erosion>,
     /// The jobs of each kind and level, one for each of a frame's batches of this level.
     jobs: [Vec<Vec<BatchJob>>; 3],
     /// The batches of the frame.
     batches: Vec<Batch>,
 }
 
-/// The heights of two recipes, and their blend, which is drawn.
+/// The recipes of a terrain.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Recipes<'a> {
+    pub own: &'a Recipe,
+    /// The recipe towards which the heights move.
+    pub target: Option<&'a Recipe>,
+}
+
+/// The heights of a recipe, and what makes them.
+#[derive(Debug)]
+struct End {
+    generator: RegionPass,
+    /// The mode in which the generator injects features.
+    injection: Option<FeatureMode>,
+    scratch: HeightScratch,
+    /// Erodes the finest nodes; `None` without erosion.
+    erosion: Option<Erosion>,
+    tiles: Buffer<i32>,
+    facts: Buffer<u32>,
+}
+
+/// The blend of the heights of two recipes, which is drawn.
 #[derive(Debug)]
 struct Blend {
-    target: Recipe,
-    generator: RegionPass,
-    scratch: HeightScratch,
-    /// The tiles at time 0 and at time 1.
-    ends: [Buffer<i32>; 2],
-    /// Facts about the tiles at time 1.
-    facts: Buffer<u32>,
     job: MorphJob,
     /// Whether the next frame must compute the blend.
     is_due: bool,
@@ -171,11 +180,11 @@ pub(super) struct NewNode {
     pub elevation: Option<NodeElevation>,
 }
 
-/// What the device found about a node.
+/// What the device found about a node's heights of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FoundFacts {
     pub own: NodeFacts,
-    /// The facts of the heights that are generated without the map, where they count, of those of the target, or of the eroded ones.
+    /// The facts of the heights that are generated without the map, where they count, or of the eroded ones.
     pub other: Option<NodeFacts>,
 }
 
@@ -257,9 +266,33 @@ impl Grid {
 }
 
 impl PoolSize {
-    /// Whether there are facts about the heights without a map, or about eroded heights.
-    fn has_others(&self) -> bool {
-        self.map.is_some() || self.erosion.is_some()
+    /// Number of rows of facts. The second half is about the heights without a map, or about eroded heights.
+    fn rows(&self) -> usize {
+        if self.map.is_some() || self.erosion.is_some() { 2 * self.capacity } else { self.capacity }
+    }
+}
+
+impl<'a> Recipes<'a> {
+    /// The recipes of a source, whose own recipe has become `own`.
+    pub fn new(own: &'a Recipe, source: &'a TerrainSource) -> Self {
+        Self { own, target: source.target.as_ref().map(|(target, _)| &**target) }
+    }
+
+    /// The own recipe, and that of the target.
+    pub fn all(self) -> impl Iterator<Item = &'a Recipe> {
+        [Some(self.own), self.target].into_iter().flatten()
+    }
+
+    /// The recipe of the heights of a kind.
+    fn of(self, kind: Heights) -> &'a Recipe {
+        self.target.filter(|_| kind == Heights::Target).unwrap_or(self.own)
+    }
+}
+
+impl Heights {
+    /// The place of their recipe among a pool's ends.
+    fn end(self) -> usize {
+        usize::from(self == Self::Target)
     }
 }
 
@@ -268,39 +301,34 @@ impl Pool {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub fn new(
-        gpu: &Gpu,
-        (recipe, target): (&Recipe, Option<&Recipe>),
-        grid: Grid,
-        size: PoolSize,
-    ) -> Result<Self, Error> {
-        let (config, PoolSize { capacity, has_holes, has_normals, map, .. }) = (&recipe.config, size);
+    pub fn new(gpu: &Gpu, recipes: Recipes<'_>, grid: Grid, size: PoolSize) -> Result<Self, Error> {
+        let PoolSize { capacity, has_holes, has_normals, map, .. } = size;
         let width = (0..=grid.top).map(|level| grid.shape(level).region_width()).max().unwrap_or(0);
-        // The largest scratch is that of the widest regions with the most subdivisions.
-        let regions = Regions { count: BATCH as u32, width: width + 2 * recipe.apron(0), coarser: 0 };
-        let rows = if size.has_others() { 2 * capacity } else { capacity };
-        let words = rows * NODE_FACTS as usize;
+        let words = size.rows() * NODE_FACTS as usize;
         let most = if size.erosion.is_some() { 2 * capacity } else { capacity };
-        let tiles = |label| Buffer::new(gpu, label, most * (grid.shape(0).tile_width() as usize).pow(2));
-        let drawn = tiles("terrain nodes")?;
-        let blend = |target: &Recipe| -> Result<Blend, Error> {
-            let ends = [tiles("terrain nodes at time 0")?, tiles("terrain nodes at time 1")?];
-            let buffers = MorphBuffers { from: &ends[0], to: &ends[1], heights: &drawn };
-            let job = HeightMorphPass::new(gpu)?.prepare(gpu, buffers)?;
-            Ok(Blend {
-                target: target.clone(),
-                generator: RegionPass::new(gpu, &target.config, target.features.injection())?,
-                scratch: HeightScratch::for_regions(gpu, &target.config, regions)?,
-                ends,
-                facts: Buffer::new(gpu, "facts of nodes at time 1", words)?,
-                job,
-                is_due: false,
+        let tiles = || Buffer::new(gpu, "terrain nodes", most * (grid.shape(0).tile_width() as usize).pow(2));
+        let end = |recipe: &Recipe| -> Result<End, Error> {
+            // The largest scratch is that of the widest regions with the most subdivisions.
+            let regions = Regions { count: BATCH as u32, width: width + 2 * recipe.apron(0), coarser: 0 };
+            let erosion = |limit| Erosion::new(gpu, (recipe, limit), grid, regions);
+            let injection = recipe.features.injection();
+            Ok(End {
+                generator: RegionPass::new(gpu, &recipe.config, injection)?,
+                injection,
+                scratch: HeightScratch::for_regions(gpu, &recipe.config, regions)?,
+                erosion: size.erosion.map(erosion).transpose()?,
+                tiles: tiles()?,
+                facts: Buffer::new(gpu, "facts of nodes", words)?,
             })
         };
-        let blend = target.map(blend).transpose()?;
-        let read = if blend.is_some() { 2 * words } else { words };
-        let erosion = |limit| Erosion::new(gpu, (recipe, limit), grid, regions);
-        let erosion = size.erosion.map(erosion).transpose()?;
+        let ends = recipes.all().map(end).collect::<Result<Vec<_>, _>>()?;
+        let drawn = if ends.len() > 1 { tiles()? } else { ends[0].tiles.clone() };
+        let blend = |target: &End| -> Result<Blend, Error> {
+            let buffers = MorphBuffers { from: &ends[0].tiles, to: &target.tiles, heights: &drawn };
+            Ok(Blend { job: HeightMorphPass::new(gpu)?.prepare(gpu, buffers)?, is_due: false })
+        };
+        let blend = ends.get(1).map(blend).transpose()?;
+        let read = 4 * (words * ends.len()) as u64;
         Ok(Self {
             tiles: drawn,
             patches: Buffer::new(gpu, "patches", capacity)?,
@@ -309,10 +337,7 @@ impl Pool {
                 "holes of nodes",
                 if has_holes { capacity * grid.hole_words() } else { 1 },
             )?,
-            facts: Buffer::new(gpu, "facts of nodes", words)?,
-            ring: ReadbackRing::new(gpu, "facts of nodes", FRAMES_IN_FLIGHT, 4 * read as u64)?,
-            generator: RegionPass::new(gpu, config, recipe.features.injection())?,
-            injection: recipe.features.injection(),
+            ring: ReadbackRing::new(gpu, "facts of nodes", FRAMES_IN_FLIGHT, read)?,
             pass: NodePass::new(gpu)?,
             normals_pass: has_normals.then(|| NodeNormalsPass::new(gpu)).transpose()?,
             normals: Buffer::new(
@@ -321,27 +346,29 @@ impl Pool {
                 if has_normals { capacity * (grid.shape(0).normals_width() as usize).pow(2) } else { 1 },
             )?,
             heights: Buffer::new(gpu, "finer heights", BATCH * (width as usize).pow(2))?,
-            scratch: HeightScratch::for_regions(gpu, config, regions)?,
             replace: map.map(|_| ReplacePass::new(gpu)).transpose()?,
             size,
             grid,
+            ends,
             blend,
-            erosion,
             jobs: [(); 3].map(|()| (0..=grid.top).map(|_| Vec::new()).collect()),
             batches: Vec::new(),
         })
     }
 
     /// The facts of all tiles, and the number of the frame after which they were copied; `None` if none have arrived.
-    pub fn arrived(&mut self) -> Option<(u64, Vec<Option<FoundFacts>>)> {
+    /// Facts of a tile are those of the own recipe's heights and of the target's; without a target, twice the former.
+    pub fn arrived(&mut self) -> Option<(u64, Vec<Option<[FoundFacts; 2]>>)> {
         let (frame, bytes) = self.ring.take()?;
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
         let rows = words.as_chunks::<{ NODE_FACTS as usize }>().0;
-        let facts = |slot: usize| NodeFacts::from_words(*rows.get(slot)?);
-        let found = (0..self.size.capacity).map(|slot| {
-            let (own, other) = (facts(slot)?, facts(self.size.capacity + slot));
-            (self.blend.is_none() || other.is_some()).then_some(FoundFacts { own, other })
-        });
+        let found = |end: usize, slot: usize| {
+            let rows = rows.chunks(self.size.rows()).nth(end)?;
+            let facts = |row: usize| NodeFacts::from_words(*rows.get(row)?);
+            Some(FoundFacts { own: facts(slot)?, other: facts(self.size.capacity + slot) })
+        };
+        let last = self.ends.len() - 1;
+        let found = (0..self.size.capacity).map(|slot| Some([found(0, slot)?, found(last, slot)?]));
         Some((frame, found.collect()))
     }
 
@@ -359,19 +386,19 @@ impl Pool {
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
-    pub fn make(&mut self, gpu: &Gpu, recipe: &Recipe, new: &[NewNode]) -> Result<(), Error> {
+    pub fn make(&mut self, gpu: &Gpu, recipes: Recipes<'_>, new: &[NewNode]) -> Result<(), Error> {
         self.batches.clear();
-        let Recipe { config, features, .. } = recipe;
         if let Some(blend) = &mut self.blend {
             blend.is_due |= !new.is_empty();
         }
-        if self.injection != features.injection() {
-            self.generator = RegionPass::new(gpu, config, features.injection())?;
-            self.injection = features.injection();
+        let (own, Recipe { config, features, .. }) = (&mut self.ends[0], recipes.own);
+        if own.injection != features.injection() {
+            own.generator = RegionPass::new(gpu, config, features.injection())?;
+            own.injection = features.injection();
             self.jobs.iter_mut().flatten().for_each(Vec::clear);
-            self.erosion.iter_mut().for_each(Erosion::forget_jobs);
+            own.erosion.iter_mut().for_each(Erosion::forget_jobs);
         }
-        self.erosion.iter_mut().for_each(Erosion::begin);
+        self.erosions().for_each(Erosion::begin);
         let kinds = [Heights::Generated, Heights::Given, Heights::Target];
         for (level, kind) in
             (0..=self.grid.top as usize).flat_map(|level| kinds.map(|heights| (level, heights)))
@@ -386,22 +413,21 @@ impl Pool {
             };
             let own: Vec<NewNode> = new.iter().filter(is_own).cloned().collect();
             for (job, nodes) in own.chunks(BATCH).enumerate() {
-                let of = (level as u32, kind);
+                let (of, recipe) = ((level as u32, kind), recipes.of(kind));
                 if self.jobs[kind as usize][level].len() <= job {
-                    let made = self.job(gpu, config, of, 0)?;
+                    let made = self.job(gpu, &recipe.config, of, 0)?;
                     self.jobs[kind as usize][level].push(made);
                 }
                 let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
-                let BatchJob { heights, features: room, .. } = &self.jobs[kind as usize][level][job];
-                let features = self.features_of(kind, features);
-                let eroded = self.jobs[kind as usize][level][job].erosion.as_ref().zip(self.erosion.as_ref());
+                let BatchJob { heights, features: room, erosion, .. } = &self.jobs[kind as usize][level][job];
+                let eroded = erosion.as_ref().zip(self.ends[kind.end()].erosion.as_ref());
                 let around = eroded.map_or(0, |(eroded, erosion)| {
-                    eroded.erosion.feature_count(erosion, (self.grid, nodes), features)
+                    eroded.erosion.feature_count(erosion, (self.grid, nodes), &recipe.features)
                 });
-                let needed = heights.feature_count(&firsts, features).max(around);
+                let needed = heights.feature_count(&firsts, &recipe.features).max(around);
                 if needed > *room {
                     self.jobs[kind as usize][level][job] =
-                        self.job(gpu, config, of, needed.next_power_of_two())?;
+                        self.job(gpu, &recipe.config, of, needed.next_power_of_two())?;
                 }
                 let cut = self.cut(gpu, recipe, kind, nodes)?;
                 self.batches.push(Batch { heights: kind, level, job, nodes: nodes.to_vec(), cut });
@@ -419,30 +445,27 @@ impl Pool {
         nodes: &[NewNode],
     ) -> Result<Cut, Error> {
         let map = given_by(self.size, self.replace.as_ref(), kind);
-        let source = Source { generator: &self.generator, scratch: &self.scratch, config, features: 0, map };
-        match &mut self.erosion {
-            Some(erosion) => erosion.cut(gpu, (self.grid, nodes), source, features),
-            None => Ok(Cut::default()),
-        }
+        let End { generator, scratch, erosion, .. } = &mut self.ends[kind.end()];
+        let source = Source { generator, scratch, config, features: 0, map };
+        let cut = erosion.as_mut().map(|erosion| erosion.cut(gpu, (self.grid, nodes), source, features));
+        cut.unwrap_or(Ok(Cut::default()))
     }
 
     /// The region that is generated and eroded for a node; `None` for a node that is not eroded.
     pub fn around(&self, node: Node) -> Option<Region> {
-        let erosion = self.erosion.as_ref().filter(|_| self.grid.is_eroded(self.size, node.level))?;
+        let erosion = self.ends[0].erosion.as_ref();
+        let erosion = erosion.filter(|_| self.grid.is_eroded(self.size, node.level))?;
         Some(erosion.around(self.grid, node))
     }
 
     /// Forgets the eroded ground whose region is changed.
     pub fn forget_eroded(&mut self, is_changed: impl Fn(Region) -> bool) {
-        self.erosion.iter_mut().for_each(|erosion| erosion.forget(self.grid, &is_changed));
+        let grid = self.grid;
+        self.erosions().for_each(|erosion| erosion.forget(grid, &is_changed));
     }
 
-    /// The injected heights of a batch: those of the target, or `own`.
-    fn features_of<'a>(&'a self, heights: Heights, own: &'a Features) -> &'a Features {
-        match (&self.blend, heights) {
-            (Some(blend), Heights::Target) => &blend.target.features,
-            _ => own,
-        }
+    fn erosions(&mut self) -> impl Iterator<Item = &mut Erosion> {
+        self.ends.iter_mut().filter_map(|end| end.erosion.as_mut())
     }
 
     /// Makes the next frame blend the heights again, at another time.
@@ -463,28 +486,17 @@ impl Pool {
         let (count, width, coarser) = (BATCH as u32, shape.region_width(), self.grid.coarser(level));
         let regions = Regions { count, width, coarser };
         let slots = Buffer::new(gpu, "slots of nodes", BATCH)?;
-        let (tiles, facts) = match (&self.blend, kind) {
-            (Some(blend), Heights::Target) => (&blend.ends[1], &blend.facts),
-            (Some(blend), _) => (&blend.ends[0], &self.facts),
-            (None, _) => (&self.tiles, &self.facts),
-        };
+        let End { generator, scratch, erosion, tiles, facts, .. } = &self.ends[kind.end()];
         let facts_of = |slots: &Buffer<u32>| {
             let heights = &self.heights;
             self.pass.prepare(gpu, shape, count, NodeBuffers { heights, slots, tiles, facts })
         };
-        if let (Some(Blend { target, generator, scratch, .. }), Heights::Target) = (&self.blend, kind) {
-            let output = HeightBuffers { output: &self.heights, scratch };
-            let heights = generator.prepare_given(gpu, &target.config, regions, features, output, None)?;
-            let nodes = facts_of(&slots)?;
-            let (given, erosion, normals) = (None, None, None);
-            return Ok(BatchJob { heights, features, given, slots, nodes, erosion, normals });
-        }
-        let output = HeightBuffers { output: &self.heights, scratch: &self.scratch };
+        let output = HeightBuffers { output: &self.heights, scratch };
         let map = given_by(self.size, self.replace.as_ref(), kind);
         // A map that is coarser than the regions gives heights of a coarser lattice, from which theirs follow.
         let (lattice, own) =
             (map.filter(|map| map.coarser > coarser), map.filter(|map| map.coarser <= coarser));
-        let heights = self.generator.prepare_given(gpu, config, regions, features, output, lattice)?;
+        let heights = generator.prepare_given(gpu, config, regions, features, output, lattice)?;
         let given = |GivenHeights { pass, .. }: GivenHeights<'_>| -> Result<GivenJob, Error> {
             let generated = || -> Result<_, Error> {
                 let slots = Buffer::new(gpu, "slots of generated heights", BATCH)?;
@@ -497,14 +509,14 @@ impl Pool {
         let given = own.map(given).transpose()?;
         let nodes = facts_of(&slots)?;
         let eroded = |erosion: &Erosion| -> Result<_, Error> {
-            let source = Source { generator: &self.generator, scratch: &self.scratch, config, features, map };
+            let source = Source { generator, scratch, config, features, map };
             let erosion = erosion.prepare(gpu, (self.grid, level), source, &self.heights)?;
             let slots = Buffer::new(gpu, "slots of eroded nodes", BATCH)?;
             let buffers = NodeBuffers { heights: &erosion.heights, slots: &slots, tiles, facts };
             let nodes = self.pass.prepare(gpu, shape, count, buffers)?;
             Ok(ErodedNodes { erosion, slots, nodes })
         };
-        let erosion = self.erosion.as_ref().filter(|_| coarser == 0).map(eroded).transpose()?;
+        let erosion = erosion.as_ref().filter(|_| coarser == 0).map(eroded).transpose()?;
         let normals = |pass: &NodeNormalsPass| {
             let heights = erosion.as_ref().map_or(&self.heights, |eroded| &eroded.erosion.heights);
             let buffers = NodeNormalsBuffers { heights, slots: &slots, normals: &self.normals };
@@ -522,7 +534,7 @@ impl Pool {
     pub fn stage(
         &self,
         staged: &mut Staged,
-        (Recipe { config, features, .. }, time): (&Recipe, Morph),
+        (recipes, time): (Recipes<'_>, Morph),
         holes: &[TerrainHole],
     ) -> Result<(), Error> {
         if let Some(blend) = self.blend.as_ref().filter(|blend| blend.is_due) {
@@ -530,17 +542,18 @@ impl Pool {
         }
         for Batch { heights, level, job, nodes, cut } in &self.batches {
             let job = &self.jobs[*heights as usize][*level][*job];
+            let (end, Recipe { config, features, .. }) = (&self.ends[heights.end()], recipes.of(*heights));
             let (mut slots, mut generated) = ([NO_SLOT; BATCH], [NO_SLOT; BATCH]);
             for ((slot, generated), new) in slots.iter_mut().zip(&mut generated).zip(nodes) {
                 (*slot, *generated) = (new.slot, self.size.capacity as u32 + new.slot);
             }
             staged.elements(&job.slots, 0, &slots)?;
             let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
-            job.heights.set_regions(staged, &firsts, self.features_of(*heights, features))?;
+            job.heights.set_regions(staged, &firsts, features)?;
             if let Some((_, slots)) = job.given.as_ref().and_then(|given| given.generated.as_ref()) {
                 staged.elements(slots, 0, &generated)?;
             }
-            if let (Some(job), Some(erosion)) = (&job.erosion, &self.erosion) {
+            if let (Some(job), Some(erosion)) = (&job.erosion, &end.erosion) {
                 staged.elements(&job.slots, 0, &generated)?;
                 erosion.stage(staged, (&job.erosion, cut), (self.grid, nodes), features)?;
             }
@@ -552,18 +565,12 @@ impl Pool {
                 }
             }
             let none = [0; NODE_FACTS as usize];
-            if let (Some(blend), Heights::Target) = (&self.blend, heights) {
-                for new in nodes {
-                    staged.elements(&blend.facts, new.slot as usize * NODE_FACTS as usize, &none)?;
-                }
-                continue;
-            }
             for new in nodes {
-                self.stage_patch(staged, config, (new.node, new.slot), holes)?;
-                let own = new.slot as usize;
-                let generated = self.size.has_others().then_some(self.size.capacity + own);
-                for row in [Some(own), generated].into_iter().flatten() {
-                    staged.elements(&self.facts, row * NODE_FACTS as usize, &none)?;
+                if *heights != Heights::Target {
+                    self.stage_patch(staged, config, (new.node, new.slot), holes)?;
+                }
+                for row in (new.slot as usize..self.size.rows()).step_by(self.size.capacity) {
+                    staged.elements(&end.facts, row * NODE_FACTS as usize, &none)?;
                 }
             }
         }
@@ -611,7 +618,8 @@ impl Pool {
                 given.replace.record(encoder);
             }
             job.nodes.record(encoder);
-            if let Some((eroded, erosion)) = job.erosion.as_ref().zip(self.erosion.as_ref()) {
+            let erosion = self.ends[heights.end()].erosion.as_ref();
+            if let Some((eroded, erosion)) = job.erosion.as_ref().zip(erosion) {
                 erosion.record(encoder, &eroded.erosion, &cut);
                 eroded.nodes.record(encoder);
             }
@@ -623,10 +631,10 @@ impl Pool {
             blend.job.record(encoder);
         }
         if reads_facts {
-            let all = [Some(&self.facts), self.blend.as_ref().map(|blend| &blend.facts)];
+            let all = &self.ends;
             self.ring.record(encoder, frame, |encoder, to| {
                 let mut at = 0;
-                for facts in all.into_iter().flatten() {
+                for End { facts, .. } in all {
                     let bytes = 4 * facts.len() as u64;
                     encoder.copy_buffer_to_buffer(facts.raw(), 0, to, at, bytes);
                     at += bytes;
