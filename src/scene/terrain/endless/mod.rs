@@ -218,7 +218,7 @@ struct Resident {
     made: u64,
     /// What lies below the heights from which the node is made.
     beyond: Beyond,
-    /// What the device found about the own recipe's heights and the target's; `None` until it arrives.
+    /// The facts of the own recipe's heights and of the target's; `None` until they arrive.
     found: Option<[FoundFacts; 2]>,
     facts: Option<Facts>,
 }
@@ -515,7 +515,7 @@ impl Endless {
                     (Some(limit), Some(eroded)) if grid.is_eroded(self.size, node.level) => {
                         below(own, None).eroded(below(eroded, None), limit.depth)
                     }
-                    (Some(limit), _) => below(own, None).beside_eroded(limit.depth),
+                    (Some(limit), _) => below(own, other).beside_eroded(limit.depth),
                 }
             };
             let facts = resident.found.map(|[own, other]| {

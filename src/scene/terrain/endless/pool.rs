@@ -180,7 +180,7 @@ pub(super) struct NewNode {
     pub elevation: Option<NodeElevation>,
 }
 
-/// What the device found about a node's heights of a recipe.
+/// Facts about a node's heights, which one recipe makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FoundFacts {
     pub own: NodeFacts,
@@ -278,7 +278,7 @@ impl<'a> Recipes<'a> {
         Self { own, target: source.target.as_ref().map(|(target, _)| &**target) }
     }
 
-    /// The own recipe, and that of the target.
+    /// The own recipe, then the target's.
     pub fn all(self) -> impl Iterator<Item = &'a Recipe> {
         [Some(self.own), self.target].into_iter().flatten()
     }
@@ -308,7 +308,7 @@ impl Pool {
         let most = if size.erosion.is_some() { 2 * capacity } else { capacity };
         let tiles = || Buffer::new(gpu, "terrain nodes", most * (grid.shape(0).tile_width() as usize).pow(2));
         let end = |recipe: &Recipe| -> Result<End, Error> {
-            // The largest scratch is that of the widest regions with the most subdivisions.
+            // The widest regions with the most subdivisions need the largest scratch.
             let regions = Regions { count: BATCH as u32, width: width + 2 * recipe.apron(0), coarser: 0 };
             let erosion = |limit| Erosion::new(gpu, (recipe, limit), grid, regions);
             let injection = recipe.features.injection();
