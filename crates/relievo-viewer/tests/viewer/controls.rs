@@ -337,16 +337,16 @@ fn the_camera_follows_pointer_and_keys() {
 #[test]
 fn the_sun_and_the_exposure_change_the_picture() {
     let mut driver = crowd();
-    let mean = |driver: &Driver| {
+    let mean = |driver: &mut Driver| {
         let picture = driver.picture();
         let sum: f64 = picture.pixels().map(|pixel| f64::from(pixel.0[0])).sum();
         sum / picture.pixels().len() as f64
     };
     driver.click("Light");
-    let before = (mean(&driver), driver.picture());
+    let before = (mean(&mut driver), driver.picture());
     driver.slide("exposure", 0.75);
     driver.frames(3);
-    assert!(mean(&driver) > 1.2 * before.0);
+    assert!(mean(&mut driver) > 1.2 * before.0);
     assert!((driver.shown().exposure - 2.0).abs() < 0.4, "{}", driver.shown().exposure);
     driver.slide("exposure", 0.5);
     driver.slide("ambient", 1.0);

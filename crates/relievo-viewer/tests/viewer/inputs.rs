@@ -34,7 +34,7 @@ fn files() -> tempfile::TempDir {
 }
 
 /// The fraction of the picture that is not the background.
-fn covered(driver: &Driver) -> f64 {
+fn covered(driver: &mut Driver) -> f64 {
     let picture = driver.picture();
     let background = *picture.get_pixel(2, 2);
     let differs = picture.pixels().filter(|pixel| **pixel != background).count();
@@ -58,7 +58,7 @@ fn every_kind_of_file_opens_and_fills_the_picture() {
         assert_eq!(driver.shown().name, name);
         let seen = driver.triangles();
         assert!(triangles.contains(&seen), "{name}: {seen} triangles");
-        let covered = covered(&driver);
+        let covered = covered(&mut driver);
         assert!((0.04..0.999).contains(&covered), "{name}: {covered} of the picture");
         assert_eq!(driver.viewer.settings().recent[0], folder.path().join(name).display().to_string());
     }

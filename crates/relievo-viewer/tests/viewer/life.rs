@@ -137,14 +137,14 @@ fn two_viewers_share_a_device() {
 fn themes_and_settings_are_remembered() {
     let mut driver = Driver::new([640, 400]);
     rocks(&mut driver);
-    let panel = |driver: &Driver| {
+    let panel = |driver: &mut Driver| {
         let window = driver.window();
         window.get_pixel(window.width() - 4, window.height() - 40).0[0]
     };
-    assert!(panel(&driver) < 60);
+    assert!(panel(&mut driver) < 60);
     driver.click("light");
     driver.frames(10);
-    assert!(panel(&driver) > 200, "{}", panel(&driver));
+    assert!(panel(&mut driver) > 200, "{}", panel(&mut driver));
     let remembered = driver.requests.iter().rev().find_map(|request| match request {
         Request::Remember(settings) => Some(settings.clone()),
         _ => None,
