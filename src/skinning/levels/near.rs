@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::Found;
 use super::bodies::common;
-use super::whole::Whole;
+use super::whole::{Whole, sorted};
 use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::{NO_BODY, Simplified};
 use crate::surface::tangent::Adjacency;
@@ -95,19 +95,16 @@ impl Sides {
         let area: Vec<u32> = whole.indices.chunks_exact(3).filter(has_area).flatten().copied().collect();
         let became = around(&area, &|vertex| found.remap[vertex as usize]);
         let samples: Vec<_> = level.chunks_exact(3).flat_map(samples_of).collect();
-        let mut search = Search::new(&area, keys, bodies);
+        let search = Search::new(&area, keys, bodies);
         let clusters = Clusters::new(&search, &became);
-        let mut candidates: Vec<u32> = Vec::new();
+        let mut candidates = Vec::new();
         let behind = Near::of(level.chunks_exact(3).flat_map(|triangle| {
             let is_own = |at: &u32| whole.member_of(&corners_of(&area, *at)) == whole.member_of(triangle);
             let beside = ring.beside(triangle, level, &point);
             let body = common(bodies, &[triangle[0], triangle[1], triangle[2]]);
             let is_rigid = clusters.are_rigid(&beside, body);
             if !is_rigid {
-                candidates.clear();
-                candidates.extend(beside.iter().flat_map(|point| became.of(*point)).filter(is_own));
-                candidates.sort_unstable();
-                candidates.dedup();
+                candidates = sorted(beside.iter().flat_map(|point| became.of(*point)).filter(is_own));
             }
             let mut likely = None;
             samples_of(triangle).map(|(corners, parts)| {
@@ -146,7 +143,7 @@ fn before(
     let (mut is_used, mut is_left) = (vec![false; whole.vertices()], vec![false; whole.vertices()]);
     whole.indices.iter().for_each(|vertex| is_used[*vertex as usize] = true);
     level.iter().for_each(|vertex| is_left[*vertex as usize] = true);
-    let mut search = Search::new(level, keys, bodies);
+    let search = Search::new(level, keys, bodies);
     // A cache, because many vertices have collapsed into the same vertex.
     let mut rings: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
     // The triangles of each mesh, computed on demand.
@@ -197,8 +194,6 @@ struct Search<'a> {
     bodies: &'a [u32],
     /// A sphere around each triangle in the first pose, as center and radius.
     spheres: Vec<(Vec3, f32)>,
-    /// Candidate triangles, each with its squared distance in the first pose.
-    found: Vec<(f32, u32)>,
 }
 
 impl<'a> Search<'a> {
@@ -212,18 +207,25 @@ impl<'a> Search<'a> {
             (middle, 1.000_01 * radius.sqrt())
         };
         let spheres = indices.as_chunks::<3>().0.iter().map(sphere).collect();
-        Self { indices, keys, bodies, spheres, found: Vec::new() }
+        Self { indices, keys, bodies, spheres }
     }
 
-    fn off(&self, key: usize, wanted: Vec3, triangle: u32) -> f32 {
-        let corners = corners_of(self.indices, triangle).map(|vertex| self.keys[key][vertex as usize]);
-        nearest_on_triangle(wanted, corners).distance_squared(wanted)
+    /// The squared distance of a triangle in a pose, or infinity if the triangle's box is beyond the squared distance `within`.
+    fn off(&self, key: usize, wanted: Vec3, triangle: u32, within: f32) -> f32 {
+        let [a, b, c] = corners_of(self.indices, triangle).map(|vertex| self.keys[key][vertex as usize]);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let to_box = (low - wanted).max(wanted - high).max(Vec3::ZERO).length_squared();
+        // More than the rounding errors of both distances.
+        if to_box > 1.001 * within + 1e-7 * high.distance_squared(low) {
+            return f32::INFINITY;
+        }
+        nearest_on_triangle(wanted, [a, b, c]).distance_squared(wanted)
     }
 
     /// The candidate triangles that are nearest to a point in at least one pose, as corners. `wanted` gives the point
     /// in a pose, and `body` is the point's rigid body.
     fn nearest_in_each(
-        &mut self,
+        &self,
         wanted: impl Fn(&Vec<Vec3>) -> Vec3,
         body: u32,
         candidates: &[u32],
@@ -234,10 +236,9 @@ impl<'a> Search<'a> {
         if self.keys.len() == 1 || candidates.iter().all(|triangle| is_rigid(*triangle)) {
             return self.nearest(wanted(&self.keys[0]), candidates).map(corners).into_iter().collect();
         }
-        let mut found = std::mem::take(&mut self.found);
-        found.clear();
         let first = wanted(&self.keys[0]);
-        found.extend(candidates.iter().map(|triangle| (self.off(0, first, *triangle), *triangle)));
+        let off = |triangle: &u32| (self.off(0, first, *triangle, f32::INFINITY), *triangle);
+        let mut found: Vec<(f32, u32)> = candidates.iter().map(off).collect();
         let order = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         if found.len() > MAX {
             found.select_nth_unstable_by(MAX, order);
@@ -245,23 +246,29 @@ impl<'a> Search<'a> {
         }
         found.sort_unstable_by(order);
         let mut nearest: Vec<[u32; 3]> = Vec::new();
+        let mut likely = 0;
         for (key, points) in self.keys.iter().enumerate() {
             let wanted = wanted(points);
-            let distances = found.iter().map(|(off, triangle)| {
-                let is_known = key == 0 || is_rigid(*triangle);
-                (if is_known { *off } else { self.off(key, wanted, *triangle) }, *triangle)
-            });
-            let best = distances.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, triangle)| corners(triangle));
-            nearest.extend(best.filter(|best| !nearest.contains(best)));
+            let mut best = (f32::INFINITY, likely);
+            // The triangle of the last pose comes first, because its distance rules out most others quickly.
+            for at in std::iter::once(likely).chain(0..found.len()) {
+                let (off, triangle) = found[at];
+                let is_known = key == 0 || is_rigid(triangle);
+                let off = if is_known { off } else { self.off(key, wanted, triangle, best.0) };
+                if off < best.0 || off == best.0 && at < best.1 {
+                    best = (off, at);
+                }
+            }
+            likely = best.1;
+            nearest.extend(Some(corners(found[likely].1)).filter(|best| !nearest.contains(best)));
         }
-        self.found = found;
         nearest.sort_unstable();
         nearest
     }
 
     /// The candidate nearest to `wanted` in the first pose. If several are equally near, the first of them.
     fn nearest(&self, wanted: Vec3, candidates: &[u32]) -> Option<u32> {
-        let mut best = Nearest::default();
+        let mut best = Nearest::NONE;
         best.start(self, wanted, candidates.iter().copied());
         candidates.iter().for_each(|triangle| best.add(self, wanted, *triangle));
         best.found()
@@ -276,13 +283,9 @@ struct Nearest {
     within: f32,
 }
 
-impl Default for Nearest {
-    fn default() -> Self {
-        Self { triangle: u32::MAX, squared: f32::INFINITY, within: f32::INFINITY }
-    }
-}
-
 impl Nearest {
+    const NONE: Self = Self { triangle: u32::MAX, squared: f32::INFINITY, within: f32::INFINITY };
+
     /// Starts with the triangle whose center is nearest. Its distance rules out most other triangles quickly.
     fn start(&mut self, search: &Search<'_>, wanted: Vec3, triangles: impl Iterator<Item = u32>) {
         let to_middle = |triangle: &u32| search.spheres[*triangle as usize].0.distance_squared(wanted);
@@ -295,7 +298,7 @@ impl Nearest {
         if self.is_beyond(wanted, search.spheres[triangle as usize]) {
             return;
         }
-        let squared = search.off(0, wanted, triangle);
+        let squared = search.off(0, wanted, triangle, f32::INFINITY);
         if squared < self.squared || squared == self.squared && triangle < self.triangle {
             *self = Self { triangle, squared, within: 1.000_01 * squared.sqrt() };
         }
@@ -362,7 +365,7 @@ impl<'a> Clusters<'a> {
         is_own: impl Fn(&u32) -> bool,
         likely: Option<u32>,
     ) -> Option<u32> {
-        let mut best = Nearest::default();
+        let mut best = Nearest::NONE;
         match likely {
             Some(triangle) => best.add(search, wanted, triangle),
             None => {
@@ -410,12 +413,4 @@ impl Around {
         let points = self.beside(&[vertex], level, of);
         sorted(points.iter().flat_map(|point| self.of(*point)))
     }
-}
-
-/// Sorts a list ascending and removes duplicates.
-fn sorted(all: impl Iterator<Item = u32>) -> Vec<u32> {
-    let mut all: Vec<u32> = all.collect();
-    all.sort_unstable();
-    all.dedup();
-    all
 }

@@ -11,7 +11,7 @@ use crate::asset::mesh::Mesh;
 use crate::asset::transform::Affine;
 use crate::skinning::attribute_weights::shown_uv;
 use crate::skinning::pose::{Moment, Pose, positions_of};
-pub(super) use shared::{Shared, shared};
+pub(super) use shared::{Shared, shared, sorted};
 
 /// Several meshes of a model, with their vertices and triangles concatenated.
 pub(super) struct Whole<'a> {

@@ -88,9 +88,7 @@ impl Places {
             *known = (*known).min(vertex);
         });
         let point: Vec<u32> = numbers.iter().map(|number| first[*number as usize]).collect();
-        let mut used: Vec<u32> = mesh.indices.iter().map(|vertex| point[*vertex as usize]).collect();
-        used.sort_unstable();
-        used.dedup();
+        let used = sorted(mesh.indices.iter().map(|vertex| point[*vertex as usize]));
         let border = border(&mesh.indices, &point);
         Self { poses, point, used, border }
     }
@@ -150,9 +148,7 @@ impl Search<'_> {
         let position = own.poses[0][vertex as usize];
         let signs = [-1.0, 1.0];
         let corners = signs.iter().flat_map(|x| signs.iter().flat_map(move |y| signs.map(|z| [*x, *y, z])));
-        let mut cells: Vec<[i64; 3]> = corners.map(|off| self.cell(position, off)).collect();
-        cells.sort_unstable();
-        cells.dedup();
+        let cells = sorted(corners.map(|off| self.cell(position, off)));
         let listed = cells.iter().filter_map(|cell| self.cells.get(cell));
         let fits = |at: &usize| {
             let known = &self.known[*at];
@@ -185,4 +181,12 @@ fn join(group: &mut [usize], a: usize, b: usize) {
 fn groups(group: &[usize]) -> Vec<Vec<usize>> {
     let members = |first: usize| (0..group.len()).filter(|mesh| group[*mesh] == first).collect::<Vec<_>>();
     (0..group.len()).map(members).filter(|members| !members.is_empty()).collect()
+}
+
+/// Sorts a list ascending and removes duplicates.
+pub fn sorted<T: Ord>(all: impl Iterator<Item = T>) -> Vec<T> {
+    let mut all: Vec<T> = all.collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
