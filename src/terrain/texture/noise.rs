@@ -27,8 +27,13 @@ fn corners(at: f32, period: u32) -> ([u32; 2], f32) {
     // `f32::floor` is a call on processors without SSE 4.1.
     let towards_zero = scaled as i32;
     let cell = towards_zero - i32::from(scaled < towards_zero as f32);
-    let first = cell.rem_euclid(period as i32) as u32;
+    let first = wrapped(cell, period);
     ([first, if first + 1 == period { 0 } else { first + 1 }], scaled - cell as f32)
+}
+
+/// `cell` modulo `period`, without a division inside the tile.
+fn wrapped(cell: i32, period: u32) -> u32 {
+    if (0..period as i32).contains(&cell) { cell as u32 } else { cell.rem_euclid(period as i32) as u32 }
 }
 
 /// Gradient noise, about −1 to 1. `periods` is the number of lattice cells along the tile's edges.
@@ -92,7 +97,7 @@ pub fn cell(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> Cell {
     let mut found = Cell { distances: [9.0; 2], offset: [0.0; 2], word: 0 };
     for (dy, dx) in (-1..2).flat_map(|dy| (-1..2).map(move |dx| (dy, dx))) {
         let square = [(cell_x, dx, periods[0]), (cell_y, dy, periods[1])]
-            .map(|(cell, step, period)| (cell as i32 + step).rem_euclid(period as i32) as u32);
+            .map(|(cell, step, period)| wrapped(cell as i32 + step, period));
         let word = word(key, square);
         let inside = [word & 0xffff, word >> 16].map(|half| half as f32 / 65_536.0);
         let offset = [x - cell_x - dx as f32 - inside[0], y - cell_y - dy as f32 - inside[1]];
