@@ -18,12 +18,12 @@ const ILL_TYPED: &str = "@group(0) @binding(0) var<storage, read_write> out: arr
 @compute @workgroup_size(1) fn main() { out[0] = 1u; }";
 
 /// The results of one page load, which all tests of this file examine.
-struct Said {
+pub struct Said {
     written: Written,
     result: Value,
 }
 
-fn said() -> &'static Said {
+pub fn said() -> &'static Said {
     static SAID: OnceLock<Said> = OnceLock::new();
     SAID.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a temporary folder");
@@ -37,7 +37,7 @@ fn said() -> &'static Said {
         let files = [("/", include_bytes!("shaders.html").as_slice()), ("/plan.json", plan.as_bytes())];
         let start = Instant::now();
         let program = browser::program().expect("the suite needs a browser");
-        let result = browser::visit(&program, &files, Duration::from_secs(240)).expect("a result");
+        let result = browser::visit(&program, &files, Duration::from_secs(600)).expect("a result");
         println!("{} in {:.1} s", result["adapter"], start.elapsed().as_secs_f32());
         Said { written, result }
     })

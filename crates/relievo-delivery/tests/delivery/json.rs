@@ -53,29 +53,33 @@ fn a_difference_gives_the_finer_level_for_all_pairs() {
     }
 }
 
-/// Thesis B's JSON, and the chunks of the package.
+/// Thesis B's JSON, and the chunks of the package, of all models at the same time.
 fn all_pairs(host: &Host) {
-    for model in host.site.catalog().models {
-        let (name, bytes) = (model.name, host.get(&format!("/{}", model.package), &[]).body);
-        let bytes = &bytes;
-        let count = PackageHeader::read(bytes).expect("a header").0.levels.len();
-        let whole = |level: usize| -> MeshJson {
-            serde_json::from_slice(&host.get(&format!("/models/{name}/{level}.json"), &[]).body)
-                .expect("a mesh")
-        };
-        let levels: Vec<_> = (0..count).map(whole).collect();
-        for from in 1..count {
-            for to in 0..from {
-                let answer = host.get(&format!("/models/{name}/{from}-{to}.json"), &[]);
-                let difference: MeshDifference = serde_json::from_slice(&answer.body).expect("a difference");
-                let mut mesh = levels[from].clone();
-                mesh.apply(&difference).expect("it fits");
-                assert!(mesh == levels[to], "{name}: {from} to {to}");
-            }
+    std::thread::scope(|scope| {
+        for model in host.site.catalog().models {
+            scope.spawn(move || pairs_of(host, &model.name, &model.package));
         }
-        chunks(bytes);
-        println!("{name}: {} differences", count * (count - 1) / 2);
+    });
+}
+
+fn pairs_of(host: &Host, name: &str, package: &str) {
+    let bytes = &host.get(&format!("/{package}"), &[]).body;
+    let count = PackageHeader::read(bytes).expect("a header").0.levels.len();
+    let whole = |level: usize| -> MeshJson {
+        serde_json::from_slice(&host.get(&format!("/models/{name}/{level}.json"), &[]).body).expect("a mesh")
+    };
+    let levels: Vec<_> = (0..count).map(whole).collect();
+    for from in 1..count {
+        for to in 0..from {
+            let answer = host.get(&format!("/models/{name}/{from}-{to}.json"), &[]);
+            let difference: MeshDifference = serde_json::from_slice(&answer.body).expect("a difference");
+            let mut mesh = levels[from].clone();
+            mesh.apply(&difference).expect("it fits");
+            assert!(mesh == levels[to], "{name}: {from} to {to}");
+        }
     }
+    chunks(bytes);
+    println!("{name}: {} differences", count * (count - 1) / 2);
 }
 
 /// The chunks from each level to each finer one give the hash of the finer one.
