@@ -39,9 +39,12 @@ pub struct Driver {
     nodes: HashMap<String, (Role, Rect)>,
     /// The name of the widget that has the focus.
     pub focused: Option<String>,
-    /// The whole window, and its first pixels, which are all that a frame paints.
+    /// The whole window.
     target: Offscreen,
+    /// Its first pixels, which are all that a frame paints: the whole panel would take most of a frame's time.
     corner: Offscreen,
+    /// Whether each frame paints the whole window.
+    pub paints_all: bool,
     pub requests: Vec<Request>,
     /// What the last frame said of the next one.
     pub wait: Option<Duration>,
@@ -79,6 +82,7 @@ impl Driver {
             focused: None,
             target: target(&gpu, pixels),
             corner: target(&gpu, [8; 2]),
+            paints_all: false,
             requests: Vec::new(),
             wait: None,
             dark: true,
@@ -124,8 +128,8 @@ impl Driver {
             self.nodes = widgets.into_iter().collect();
             self.focused = all.get(&tree.focus).and_then(|node| named(node, &all)).map(|(name, _)| name);
         }
-        // The whole panel would take most of the time of a frame.
-        let painted = paint(&mut self.viewer, &self.corner);
+        let target = if self.paints_all { &self.target } else { &self.corner };
+        let painted = paint(&mut self.viewer, target);
         self.viewer.gpu().wait()?;
         self.requests.extend(self.viewer.requests());
         painted

@@ -76,6 +76,7 @@ fn act(driver: &mut Driver, frame: usize) {
 #[ignore = "takes minutes: `make session`"]
 fn six_thousand_frames_leave_no_memory_behind() {
     let mut driver = Driver::new([320, 180]);
+    driver.paints_all = true;
     let start = Instant::now();
     let mut points = Vec::new();
     let (mut frame, mut done) = (0, 0);
