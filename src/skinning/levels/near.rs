@@ -210,16 +210,9 @@ impl<'a> Search<'a> {
         Self { indices, keys, bodies, spheres }
     }
 
-    /// The squared distance of a triangle in a pose, or infinity if the triangle's box is beyond the squared distance `within`.
-    fn off(&self, key: usize, wanted: Vec3, triangle: u32, within: f32) -> f32 {
-        let [a, b, c] = corners_of(self.indices, triangle).map(|vertex| self.keys[key][vertex as usize]);
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let to_box = (low - wanted).max(wanted - high).max(Vec3::ZERO).length_squared();
-        // More than the rounding errors of both distances.
-        if to_box > 1.001 * within + 1e-7 * high.distance_squared(low) {
-            return f32::INFINITY;
-        }
-        nearest_on_triangle(wanted, [a, b, c]).distance_squared(wanted)
+    fn off(&self, key: usize, wanted: Vec3, triangle: u32) -> f32 {
+        let corners = corners_of(self.indices, triangle).map(|vertex| self.keys[key][vertex as usize]);
+        nearest_on_triangle(wanted, corners).distance_squared(wanted)
     }
 
     /// The candidate triangles that are nearest to a point in at least one pose, as corners. `wanted` gives the point
@@ -237,7 +230,7 @@ impl<'a> Search<'a> {
             return self.nearest(wanted(&self.keys[0]), candidates).map(corners).into_iter().collect();
         }
         let first = wanted(&self.keys[0]);
-        let off = |triangle: &u32| (self.off(0, first, *triangle, f32::INFINITY), *triangle);
+        let off = |triangle: &u32| (self.off(0, first, *triangle), *triangle);
         let mut found: Vec<(f32, u32)> = candidates.iter().map(off).collect();
         let order = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         if found.len() > MAX {
@@ -246,21 +239,14 @@ impl<'a> Search<'a> {
         }
         found.sort_unstable_by(order);
         let mut nearest: Vec<[u32; 3]> = Vec::new();
-        let mut likely = 0;
         for (key, points) in self.keys.iter().enumerate() {
             let wanted = wanted(points);
-            let mut best = (f32::INFINITY, likely);
-            // The triangle of the last pose comes first, because its distance rules out most others quickly.
-            for at in std::iter::once(likely).chain(0..found.len()) {
-                let (off, triangle) = found[at];
-                let is_known = key == 0 || is_rigid(triangle);
-                let off = if is_known { off } else { self.off(key, wanted, triangle, best.0) };
-                if off < best.0 || off == best.0 && at < best.1 {
-                    best = (off, at);
-                }
-            }
-            likely = best.1;
-            nearest.extend(Some(corners(found[likely].1)).filter(|best| !nearest.contains(best)));
+            let distances = found.iter().map(|(off, triangle)| {
+                let is_known = key == 0 || is_rigid(*triangle);
+                (if is_known { *off } else { self.off(key, wanted, *triangle) }, *triangle)
+            });
+            let best = distances.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, triangle)| corners(triangle));
+            nearest.extend(best.filter(|best| !nearest.contains(best)));
         }
         nearest.sort_unstable();
         nearest
@@ -298,7 +284,7 @@ impl Nearest {
         if self.is_beyond(wanted, search.spheres[triangle as usize]) {
             return;
         }
-        let squared = search.off(0, wanted, triangle, f32::INFINITY);
+        let squared = search.off(0, wanted, triangle);
         if squared < self.squared || squared == self.squared && triangle < self.triangle {
             *self = Self { triangle, squared, within: 1.000_01 * squared.sqrt() };
         }
