@@ -106,49 +106,63 @@ fn most_allocated<T>(gpu: &Gpu, work: impl FnOnce() -> T) -> (T, Option<u64>, u6
     (result, seen, gpu.memory().take_most() - own_before)
 }
 
-/// Every border mode with and without despiking, erosion and features, in one part and in several.
+/// Number of samples of all patches.
+const POINTS: u64 = PATCHES.len() as u64 * (SIZE * SIZE) as u64;
+
 #[test]
-fn generation_holds_two_words_a_sample() {
-    let points = PATCHES.len() as u64 * u64::from(SIZE).pow(2);
+fn in_one_part_generation_holds_two_words_a_sample() {
+    generation_holds_two_words_a_sample(128 << 20);
+}
+
+/// The windows are generated in several parts as soon as they are larger than the patches.
+#[test]
+fn with_windows_in_parts_generation_holds_two_words_a_sample() {
+    generation_holds_two_words_a_sample(4 * POINTS + 64);
+}
+
+#[test]
+fn with_patches_in_parts_generation_holds_two_words_a_sample() {
+    generation_holds_two_words_a_sample(POINTS);
+}
+
+/// Every border mode with and without despiking, erosion and features, with bindings of so many bytes.
+fn generation_holds_two_words_a_sample(binding: u64) {
     // This device holds all lists in one buffer, which a small binding would not.
     let roomy = gpu_of_bindings(128 << 20);
-    // Everything in one part, the windows in several as soon as they are larger than the patches, and the patches too.
-    for binding in [128 << 20, 4 * points + 64, points] {
-        let gpu = gpu_of_bindings(binding);
-        for recipe in recipes() {
-            for margin in [0, 1] {
-                let apron = recipe.apron(margin);
-                // The water of one window must fit a binding.
-                if recipe.hydraulic.is_some() && 16 * u64::from(SIZE + 2 * apron).pow(2) > binding {
-                    continue;
-                }
-                let generator = Generator::new(&gpu, recipe.clone()).expect("compiled");
-                let samples = PATCHES.len() as u64 * u64::from(SIZE + 2 * apron).pow(2);
-                // With hydraulic erosion, two buffers of water and sediment beside the two of heights.
-                let words = if recipe.hydraulic.is_some() { 5 } else { 1 };
-                let lists = list_bytes(&roomy, &recipe, apron);
-                let (parts, seen, own) = most_allocated(&gpu, || {
-                    generator.generate(&gpu, &PATCHES, margin, &mut |_| ()).expect("generated")
-                });
-                let case = format!(
-                    "{:?} {} despike {:?} thermal {:?} hydraulic {:?} margin {margin}: {} parts, {samples} samples, {lists} of lists",
-                    recipe.config.border,
-                    recipe.features.len(),
-                    recipe.despike,
-                    recipe.thermal,
-                    recipe.hydraulic.map(|hydraulic| hydraulic.iterations),
-                    parts.len(),
-                );
-                assert!(parts.len() == 1 || binding < 128 << 20, "{case}");
-                assert!(own >= 4 * samples, "{case}: {own} counted");
-                assert!(own <= words * 8 * samples + lists + SMALL, "{case}: {own} counted");
-                // wgpu's own staging of what is written to lists comes on top of them.
-                let bound = words * 8 * samples + 2 * lists + SMALL;
-                assert!(seen.is_none_or(|seen| seen <= bound), "{case}: {seen:?} allocated");
-                let held: u64 = parts.iter().map(|part| part.heights.bytes()).sum();
-                assert_eq!(held, gpu.memory().now(), "{case}: only results are left");
-                check(&gpu, &recipe, margin, &parts, &case);
+    let gpu = gpu_of_bindings(binding);
+    for recipe in recipes() {
+        for margin in [0, 1] {
+            let apron = recipe.apron(margin);
+            // The water of one window must fit a binding.
+            if recipe.hydraulic.is_some() && 16 * u64::from(SIZE + 2 * apron).pow(2) > binding {
+                continue;
             }
+            let generator = Generator::new(&gpu, recipe.clone()).expect("compiled");
+            let samples = PATCHES.len() as u64 * u64::from(SIZE + 2 * apron).pow(2);
+            // With hydraulic erosion, two buffers of water and sediment beside the two of heights.
+            let words = if recipe.hydraulic.is_some() { 5 } else { 1 };
+            let lists = list_bytes(&roomy, &recipe, apron);
+            let (parts, seen, own) = most_allocated(&gpu, || {
+                generator.generate(&gpu, &PATCHES, margin, &mut |_| ()).expect("generated")
+            });
+            let case = format!(
+                "{:?} {} despike {:?} thermal {:?} hydraulic {:?} margin {margin}: {} parts, {samples} samples, {lists} of lists",
+                recipe.config.border,
+                recipe.features.len(),
+                recipe.despike,
+                recipe.thermal,
+                recipe.hydraulic.map(|hydraulic| hydraulic.iterations),
+                parts.len(),
+            );
+            assert!(parts.len() == 1 || binding < 128 << 20, "{case}");
+            assert!(own >= 4 * samples, "{case}: {own} counted");
+            assert!(own <= words * 8 * samples + lists + SMALL, "{case}: {own} counted");
+            // wgpu's own staging of what is written to lists comes on top of them.
+            let bound = words * 8 * samples + 2 * lists + SMALL;
+            assert!(seen.is_none_or(|seen| seen <= bound), "{case}: {seen:?} allocated");
+            let held: u64 = parts.iter().map(|part| part.heights.bytes()).sum();
+            assert_eq!(held, gpu.memory().now(), "{case}: only results are left");
+            check(&gpu, &recipe, margin, &parts, &case);
         }
     }
 }

@@ -37,6 +37,21 @@ impl SkeletonTier {
         Self { bones: 0.25, is_rigid: false },
         Self { bones: 0.1, is_rigid: true },
     ];
+
+    /// Checks the tiers of a character.
+    ///
+    /// # Errors
+    /// [`InputError`] for more than 3 tiers, for a fraction out of range, and for fractions that do not descend.
+    pub fn check_all(tiers: &[Self]) -> Result<(), InputError> {
+        InputError::check_most("tiers.len", tiers.len(), MAX_TIERS - 1)?;
+        let mut most = 1.0;
+        for (at, Self { bones, .. }) in tiers.iter().enumerate() {
+            let bound = || format!("must be above 0, and below {most}");
+            InputError::check(*bones > 0.0 && *bones < most, format!("tiers[{at}].bones"), bones, bound)?;
+            most = *bones;
+        }
+        Ok(())
+    }
 }
 
 /// The tiers of a model's skeleton, joined to one skeleton.
@@ -69,18 +84,12 @@ impl Tiers {
     /// out if a later one has a smaller error, or if its number of bones is that of the tier before and it is not rigid.
     ///
     /// # Errors
-    /// [`InputError`] for more than 3 tiers, for a fraction out of range, for fractions that do not descend, for a name in `keep`
-    /// that belongs to no bone, and for models that [`collapse_bones`] refuses.
+    /// [`InputError`] as [`SkeletonTier::check_all`], for a name in `keep` that belongs to no bone, and for models that
+    /// [`collapse_bones`] refuses.
     pub fn new(model: &Model, tiers: &[SkeletonTier], keep: &[String]) -> Result<Self, InputError> {
-        InputError::check_most("tiers.len", tiers.len(), MAX_TIERS - 1)?;
+        SkeletonTier::check_all(tiers)?;
         let mut found: Vec<(SkeletonTier, Model, f32)> = Vec::new();
-        let mut most = 1.0;
-        for (at, tier) in tiers.iter().enumerate() {
-            if !(tier.bones > 0.0 && tier.bones < most) {
-                let bound = format!("must be above 0, and below {most}");
-                return Err(InputError::new(format!("tiers[{at}].bones"), tier.bones, bound));
-            }
-            most = tier.bones;
+        for tier in tiers {
             let reduced = reduced(model, *tier, keep)?;
             let error = MARGIN * vertex_error(model, &reduced)?;
             found.retain(|(_, _, other)| *other < error);

@@ -223,7 +223,8 @@ pub struct HeightBuffers<'a> {
 
 /// The lattice of given heights, and the pass that replaces generated ones.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct GivenHeights<'a> {
+pub struct GivenHeights<'a> {
+    /// The pass.
     pub pass: &'a ReplacePass,
     /// Number of levels by which the lattice is coarser than the terrain.
     pub coarser: u32,

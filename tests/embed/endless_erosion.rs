@@ -16,7 +16,7 @@ use relievo::scene::{
 
 use crate::edited::features;
 use crate::endless::{
-    Path, ROUNDING, World, between, flight, holes, largest, offsets, picture, small_nodes, some,
+    Path, ROUNDING, World, between, flight, hits, holes, largest, offsets, picture, small_nodes, some,
 };
 use crate::harness::{Difference, gpu};
 
@@ -119,7 +119,7 @@ fn height(place: [f64; 2], of: &dyn Fn([i64; 2]) -> i32) -> f64 {
 }
 
 /// The height at a time on the way from one to another.
-fn blended([from, to]: [i32; 2], time: f64) -> i32 {
+pub fn blended([from, to]: [i32; 2], time: f64) -> i32 {
     from + ((i64::from(to - from) * (time * 65_536.0).round() as i64) >> 16) as i32
 }
 
@@ -191,6 +191,11 @@ fn the_ground_of_the_host_is_eroded() {
         hits += 1;
     }
     assert!(hits > 10, "{hits}");
+    // The bounds of finer nodes change no hit.
+    let coarse = self::hits(&world, [100.0, 100.0], 40.0);
+    world.settle();
+    assert_eq!(self::hits(&world, [100.0, 100.0], 40.0), coarse);
+    assert!(coarse.iter().flatten().count() > 60, "{coarse:?}");
 }
 
 /// The height without erosion.

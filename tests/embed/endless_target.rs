@@ -7,6 +7,7 @@ use relievo::scene::{
 };
 
 use crate::endless::{ROUNDING, World, between, holes, largest, offsets, picture, small_nodes, some};
+use crate::endless_erosion::blended;
 use crate::harness::{Difference, gpu};
 
 /// Ground whose coarsest nodes are two kilometres wide.
@@ -30,12 +31,10 @@ fn source(time: f64) -> TerrainSource {
 
 /// The finest height at a time, from the definition.
 fn truth(time: f64, x: f64, z: f64) -> f64 {
-    let time = (time * 65_536.0).round() as i64;
     let (from, to) = (config(), target());
     between(&from, [x, z], |region| {
         let [from, to] = [&from, &to].map(|config| heights(config, &Features::default(), region));
-        let blend = |(from, to): (i32, i32)| from + ((i64::from(to - from) * time) >> 16) as i32;
-        from.into_iter().zip(to).map(blend).collect()
+        from.into_iter().zip(to).map(|(from, to)| blended([from, to], time)).collect()
     })
 }
 

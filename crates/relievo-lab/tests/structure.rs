@@ -56,9 +56,15 @@ fn unmeasured(operation: &Operation) -> Vec<String> {
 
 #[test]
 fn every_benchmark_measures_kernel_reference_and_baseline() {
-    for operation in OPERATIONS {
-        assert_eq!(unmeasured(operation), Vec::<String>::new(), "{}", operation.name);
-    }
+    std::thread::scope(|scope| {
+        for half in 0..2 {
+            scope.spawn(move || {
+                for operation in OPERATIONS.iter().skip(half).step_by(2) {
+                    assert_eq!(unmeasured(operation), Vec::<String>::new(), "{}", operation.name);
+                }
+            });
+        }
+    });
     assert_eq!(unmeasured(&IDLE), ["a case"]);
 }
 

@@ -27,7 +27,7 @@ impl Ground {
         let edge = self.spacing * cells as f64;
         let [mut from, mut to] = [0.0, limit];
         for (at, direction) in [(at.x, direction.x), (at.z, direction.z)] {
-            let [enter, leave] = slab(at, direction, edge)?;
+            let [enter, leave] = slab([0.0, edge], at, direction)?;
             (from, to) = (f64::max(from, enter), f64::min(to, leave));
         }
         let mut walk = Walk::new([at, direction], from, (self.spacing, cells));
@@ -54,13 +54,13 @@ impl Ground {
     }
 }
 
-/// Distances at which a ray enters and leaves the slab from 0 to `edge` along one axis; `None` if the ray is parallel to the slab
-/// and outside it.
-fn slab(at: f64, direction: f64, edge: f64) -> Option<[f64; 2]> {
+/// Distances at which a ray enters and leaves a slab between two planes across an axis; `None` if the ray is parallel to the slab and
+/// outside it.
+pub(crate) fn slab([low, high]: [f64; 2], at: f64, direction: f64) -> Option<[f64; 2]> {
     if direction == 0.0 {
-        return (0.0..=edge).contains(&at).then_some([f64::NEG_INFINITY, f64::INFINITY]);
+        return (low..=high).contains(&at).then_some([f64::NEG_INFINITY, f64::INFINITY]);
     }
-    let [a, b] = [-at / direction, (edge - at) / direction];
+    let [a, b] = [(low - at) / direction, (high - at) / direction];
     Some([a.min(b), a.max(b)])
 }
 

@@ -7,13 +7,13 @@ use crate::shared::terrain::noise::{NOISE_FBM, NOISE_RIDGED, NOISE_SIMPLEX};
 use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, Offset, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::levels::{GivenHeights, LevelJob, LevelPass};
+use crate::terrain::levels::{LevelJob, LevelPass};
 use crate::terrain::noise::NoisePass;
 use crate::terrain::window::{Region, Regions, Window, Windows};
 use crate::terrain::{height, smooth, wrap};
 use crate::{Error, InputError};
 
-pub use crate::terrain::levels::{HeightBuffers, HeightScratch};
+pub use crate::terrain::levels::{GivenHeights, HeightBuffers, HeightScratch};
 pub use batch::HeightBatch;
 
 /// Generates heights. Each pass is compiled for one generator, border mode, interpolation and distribution of random offsets, and for
@@ -90,29 +90,17 @@ impl RegionPass {
         let Windows { apron, .. } = windows;
         Window { patch: [0, 0], apron }.validate(config)?;
         let regions = windows.regions(config);
-        let job = self.prepare_given(gpu, config, regions, feature_capacity, buffers, None)?;
+        let job = self.prepare_regions(gpu, config, regions, feature_capacity, buffers, None)?;
         Ok(RegionJob { apron, ..job })
     }
 
-    /// Prepares the generation of `regions`. The configuration must be valid.
+    /// Prepares the generation of `regions`, with given heights on one lattice or none. Noise ignores them: no height depends on
+    /// another. The configuration must be valid.
     ///
     /// # Errors
     /// [`InputError`] for a configuration for which the pass was not compiled, for regions coarser than the generator can make, and for
     /// buffers that are too short; [`crate::gpu::GpuError`].
     pub fn prepare_regions(
-        &self,
-        gpu: &Gpu,
-        config: &TerrainConfig,
-        regions: Regions,
-        feature_capacity: usize,
-        buffers: HeightBuffers<'_>,
-    ) -> Result<RegionJob, Error> {
-        self.prepare_given(gpu, config, regions, feature_capacity, buffers, None)
-    }
-
-    /// The same as [`RegionPass::prepare_regions`], with given heights on one lattice. Noise ignores them: no height depends on
-    /// another.
-    pub(crate) fn prepare_given(
         &self,
         gpu: &Gpu,
         config: &TerrainConfig,

@@ -173,10 +173,10 @@ const STATED: f64 = 0.95;
 
 #[test]
 fn models_keep_to_what_is_allowed_on_the_way() {
-    let mut all = generated();
-    let built_in = [("rock", rock()), ("creature", creature())];
-    all.extend(built_in.map(|(name, model)| (name.to_owned(), model.expect("valid"))));
-    let worst = worst_of(all, 8);
+    let [rock, creature] = [("rock", rock()), ("creature", creature())]
+        .map(|(name, model)| vec![(name.to_owned(), model.expect("valid"))]);
+    // The rock, whose displacement is the largest, in more steps.
+    let worst = worst_of(rock, 8).max(worst_of([generated(), creature].concat(), 4));
     assert!(worst <= STATED + 0.005, "{worst}");
     // Without the factor 1.2, the rock is further off than what is allowed.
     assert!(1.2 * worst > 1.0, "the factor is of no use: {worst}");

@@ -10,13 +10,15 @@ use crate::harness::{Run, relievo};
 use crate::scene::Scene;
 use crate::{assert_refused, push_raised_and_morphed};
 
-const SMALL: [&str; 8] = ["--model", "builtin", "--clip", "walk", "--instances", "4", "--frames", "11"];
+const SMALL: [&str; 6] = ["--model", "builtin", "--clip", "walk", "--instances", "4"];
 
-/// Runs `crowd` into the folder `out` of a folder of its own.
+/// Runs `crowd` into the folder `out` of a folder of its own, with 5 frames unless the arguments give their number.
 fn run(arguments: &[&str]) -> (Run, PathBuf, tempfile::TempDir) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().join("out");
-    let run = relievo(&[&["crowd", "--out", out.to_str().expect("UTF-8")], &SMALL[..], arguments].concat());
+    let frames: &[&str] = if arguments.contains(&"--frames") { &[] } else { &["--frames", "5"] };
+    let out_at = ["crowd", "--out", out.to_str().expect("UTF-8")];
+    let run = relievo(&[&out_at[..], &SMALL, frames, arguments].concat());
     (run, out, folder)
 }
 
@@ -157,9 +159,10 @@ fn priorities_and_skeletons_of_a_crowd() {
     let text = std::fs::read(out.join("scene.json")).expect("written");
     let report: Value = serde_json::from_slice(&text).expect("JSON");
     assert_eq!(report["priorities"], json!({"hand_left": 1.0}));
-    let full = ["--gate", "bounded", "--pixels", "8", "--image", "--tiers", "0.5,rigid:0.125"];
+    let full =
+        ["--gate", "bounded", "--pixels", "8", "--image", "--frames", "11", "--tiers", "0.5,rigid:0.125"];
     let ([_, tiers], out, _folder) = rows("report.json", &full);
-    let ([_, whole], ..) = rows("report.json", &full[..5]);
+    let ([_, whole], ..) = rows("report.json", &full[..7]);
     assert!(number(&tiers["bones"]) < number(&whole["bones"]), "{tiers} {whole}");
     assert!(off(&tiers)[0] <= 8.0, "{tiers}");
     let text = std::fs::read(out.join("report.json")).expect("written");

@@ -76,10 +76,15 @@ const CONFIGS: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// The beginning of a configuration with one zone.
+const SNOW: &str = r#"{"zones": [{"min": 0, "max": 10, "texture": "snow"}], "#;
+
 #[test]
 fn both_backends_give_the_same_hashes_and_nearly_the_same_map() {
-    for (config, arguments) in CONFIGS {
-        let bench = Bench::new(config);
+    for (at, (config, arguments)) in CONFIGS.iter().enumerate() {
+        // One texture is made in less time than those of all default zones, which the first configuration has.
+        let config = if at == 0 { (*config).to_owned() } else { config.replacen('{', SNOW, 1) };
+        let bench = Bench::new(&config);
         let gpu = bench.terrain("gpu", arguments);
         let cpu = bench.terrain("cpu", &[arguments, ["--backend", "cpu"].as_slice()].concat());
         assert_eq!(hashes(&gpu), hashes(&cpu), "{config}");
@@ -95,10 +100,7 @@ fn both_backends_give_the_same_hashes_and_nearly_the_same_map() {
 #[test]
 fn arguments_take_the_place_of_erosion_in_the_configuration() {
     let made = |erosion: &str, arguments: &[&str]| {
-        // One texture is made in less time than those of all default zones.
-        let zones = r#"[{"min": 0, "max": 10, "texture": "snow"}]"#;
-        let config =
-            format!(r#"{{"patchSize": 17, "scaleFactor": 9, "seed": "h", "zones": {zones}{erosion}}}"#);
+        let config = format!(r#"{SNOW}"patchSize": 17, "scaleFactor": 9, "seed": "h"{erosion}}}"#);
         let bench = Bench::new(&config);
         let report = bench.terrain("out", &[arguments, ["--backend", "cpu"].as_slice()].concat());
         hashes(&report).join(" ")

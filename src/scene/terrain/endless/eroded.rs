@@ -273,7 +273,7 @@ impl Erosion {
         let output = HeightBuffers { output: &self.windows[0], scratch };
         let (lattice, own) = (map.filter(|map| map.coarser > 0), map.filter(|map| map.coarser == 0));
         let regions = Regions { count, width: wide, coarser: 0 };
-        let around = generator.prepare_given(gpu, config, regions, features, output, lattice)?;
+        let around = generator.prepare_regions(gpu, config, regions, features, output, lattice)?;
         let given = own.map(|map| replaced(gpu, map.pass, (count, wide), &self.windows[0])).transpose()?;
         let mut both =
             self.windows.each_ref().map(|heights| Fields { heights: heights.clone(), width: wide, count });

@@ -11,7 +11,7 @@ use crate::scene::object_kind::UnitRay;
 use crate::scene::ray::SurfaceHit;
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::field::{finish, region_of};
-use crate::terrain::ground::Ground;
+use crate::terrain::ground::{Ground, slab};
 use crate::terrain::lattice::Given;
 use crate::terrain::limit::ErosionLimit;
 use crate::terrain::limit::reference::{ErodedAt, limit as limited};
@@ -86,25 +86,14 @@ impl FinestGround {
         holes.iter().any(|hole| samples.iter().any(|sample| hole.contains(*sample, scale)))
     }
 
-    /// The first hit of a ray within a box of the world, not in a hole. `origin` is the ray's in world units.
+    /// The first hit of a ray, not in a hole. `from` and `to` are distances: all patches in which the ray lies between them are
+    /// searched. `origin` is the ray's in world units.
     pub fn hit(
         &self,
-        [low, high]: [DVec3; 2],
+        [mut from, to]: [f64; 2],
         (origin, ray): (DVec3, &UnitRay),
         holes: &[TerrainHole],
     ) -> Result<Option<SurfaceHit>, InputError> {
-        let (mut from, mut to) = (0.0_f64, ray.limit);
-        for axis in 0..3 {
-            let (at, along) = (origin[axis], ray.direction[axis]);
-            if along == 0.0 {
-                if at < low[axis] || at > high[axis] {
-                    return Ok(None);
-                }
-                continue;
-            }
-            let [one, other] = [(low[axis] - at) / along, (high[axis] - at) / along];
-            (from, to) = (from.max(one.min(other)), to.min(one.max(other)));
-        }
         // A step beyond each border, so that the next patch is found whatever the rounding.
         let step = 1e-9 * self.edge;
         while from <= to {
@@ -125,12 +114,9 @@ impl FinestGround {
                 }
                 passed = distance + 1e-6 * self.patch.terrain_scale;
             }
-            let leaves = |axis: usize| {
-                let (at, along) = (origin[axis] - corner[axis], ray.direction[axis]);
-                let border = if along > 0.0 { self.edge } else { 0.0 };
-                if along == 0.0 { f64::INFINITY } else { (border - at) / along }
-            };
-            let next = leaves(0).min(leaves(2));
+            let through =
+                [0, 2].map(|axis| slab([0.0, self.edge], origin[axis] - corner[axis], ray.direction[axis]));
+            let next = through.into_iter().flatten().map(|[_, leave]| leave).fold(f64::INFINITY, f64::min);
             if !next.is_finite() {
                 return Ok(None);
             }

@@ -38,6 +38,7 @@ use crate::shared::render::scene_terrain::{MORPH_START, STITCHED, TerrainFrame, 
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::features::Features;
+use crate::terrain::ground::slab;
 use crate::terrain::injection::{ChangedPoint, FeatureOffsets};
 use crate::terrain::limit::ErosionLimit;
 use crate::terrain::mesh::GroundPoint;
@@ -353,6 +354,35 @@ impl Endless {
         self.ground.point_at(x, z, self.holes.as_deref().unwrap_or_default())
     }
 
+    /// The ground on the host, without any patch.
+    fn finest_ground(&self) -> Result<FinestGround, InputError> {
+        FinestGround::new(
+            &self.recipe,
+            (self.source.target.clone(), self.size.erosion),
+            self.elevation.clone(),
+        )
+    }
+
+    /// The first hit of a ray on the finest ground of a node. Finer nodes that are there bound their parts of it more tightly.
+    fn hit_below(
+        &self,
+        node: Node,
+        (origin, ray): (DVec3, &UnitRay),
+        holes: &[TerrainHole],
+    ) -> Result<Option<SurfaceHit>, InputError> {
+        let inside = |node: Node| within(self.node_box(node), (origin, ray));
+        let Some(distances) = inside(node) else { return Ok(None) };
+        let children = node.children();
+        if node.level == 0 || children.iter().all(|child| self.facts(*child).is_none()) {
+            return self.ground.hit(distances, (origin, ray), holes);
+        }
+        let mut parts: Vec<_> =
+            children.into_iter().filter_map(|child| Some((inside(child)?, child))).collect();
+        parts.sort_by(|([one, _], _), ([other, _], _)| one.total_cmp(other));
+        let hits = parts.into_iter().map(|(_, child)| self.hit_below(child, (origin, ray), holes));
+        hits.filter_map(Result::transpose).next().transpose()
+    }
+
     /// The nodes after the last frame.
     pub fn statistics(&self) -> EndlessStatistics {
         self.statistics
@@ -541,8 +571,7 @@ impl Endless {
         let maps = elevation.as_ref().zip(self.elevation.as_ref());
         changed.extend(maps.into_iter().flat_map(|(new, old)| new.changed(old)));
         (self.recipe, self.offsets, self.elevation) = (recipe, offsets, elevation);
-        let also = (self.source.target.clone(), self.size.erosion);
-        self.ground = FinestGround::new(&self.recipe, also, self.elevation.clone())?;
+        self.ground = self.finest_ground()?;
         let is_region_changed = |region| changed.iter().any(|point: &ChangedPoint| point.changes(region));
         self.pool.forget_eroded(is_region_changed);
         let apron = self.recipe.apron(0);
@@ -587,8 +616,7 @@ impl Endless {
         let Some((_, current)) = &mut self.source.target else { return Err(super::without_target()) };
         if *current != morph {
             *current = morph;
-            let also = (self.source.target.clone(), self.size.erosion);
-            self.ground = FinestGround::new(&self.recipe, also, None)?;
+            self.ground = self.finest_ground()?;
             self.pool.blend_again();
         }
         Ok(())
@@ -997,6 +1025,15 @@ fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
     OUTSIDE * LodCamera { ahead: towards / distance, ..*camera }.allows(center, radius)
 }
 
+/// The distances at which a ray enters and leaves a box, within its limit; `None` if it misses the box. `origin` is the ray's in world
+/// units.
+fn within([low, high]: [DVec3; 2], (origin, ray): (DVec3, &UnitRay)) -> Option<[f64; 2]> {
+    let mut axes = (0..3).map(|axis| slab([low[axis], high[axis]], origin[axis], ray.direction[axis]));
+    let within = |[from, to]: [f64; 2], [enter, leave]: [f64; 2]| [from.max(enter), to.min(leave)];
+    let [from, to] = axes.try_fold([0.0, ray.limit], |all, axis| Some(within(all, axis?)))?;
+    (from <= to).then_some([from, to])
+}
+
 /// The facts of a node, from what the device found and what lies below, finer injected heights among it.
 fn facts_of(
     (config, offsets): (&TerrainConfig, &FeatureOffsets),
@@ -1145,7 +1182,7 @@ impl ObjectKind for Endless {
             return Ok(None);
         };
         let (origin, holes) = (Placement::corner(instance.cell) + ray.origin, self.holes.as_deref());
-        self.ground.hit(self.node_box(*node), (origin, ray), holes.unwrap_or_default())
+        self.hit_below(*node, (origin, ray), holes.unwrap_or_default())
     }
 
     fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {

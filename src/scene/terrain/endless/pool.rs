@@ -496,7 +496,7 @@ impl Pool {
         // A map that is coarser than the regions gives heights of a coarser lattice, from which theirs follow.
         let (lattice, own) =
             (map.filter(|map| map.coarser > coarser), map.filter(|map| map.coarser <= coarser));
-        let heights = generator.prepare_given(gpu, config, regions, features, output, lattice)?;
+        let heights = generator.prepare_regions(gpu, config, regions, features, output, lattice)?;
         let given = |GivenHeights { pass, .. }: GivenHeights<'_>| -> Result<GivenJob, Error> {
             let generated = || -> Result<_, Error> {
                 let slots = Buffer::new(gpu, "slots of generated heights", BATCH)?;

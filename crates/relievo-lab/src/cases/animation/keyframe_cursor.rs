@@ -127,30 +127,23 @@ fn compare_cursors(
     is_used: impl Fn(usize) -> bool,
 ) -> Comparison {
     // Unused cursors compare as −1.
-    let clip_clock = |cursor: &KeyframeCursor| match cursor.key == POISON {
+    let used = |cursor: &KeyframeCursor| match cursor.key == POISON {
         true if cursor.fraction.to_bits() == POISON => -1.0,
-        _ => cursor.key as f32 + cursor.fraction,
+        _ => clip_clock(cursor),
     };
     let expected: Vec<f32> = (expected.iter().enumerate())
-        .map(|(at, cursor)| if is_used(at) { clip_clock(cursor) } else { -1.0 })
+        .map(|(at, cursor)| if is_used(at) { used(cursor) } else { -1.0 })
         .collect();
-    let actual: Vec<f32> = actual.iter().map(clip_clock).collect();
+    let actual: Vec<f32> = actual.iter().map(used).collect();
     compare::absolute(&actual, &expected, KEYFRAME_CURSOR_BOUND)
 }
 
-/// Loop times too large to resolve, up to infinity, give the clip's start, and clamped ones its end. Valid
-/// instances stay far below; the test writes such values to the device's buffer.
+/// Loop times too large to resolve, up to infinity, give the clip's start, and clamped ones its end.
 async fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
-    let (gpu, edges) = (cases.gpu, edges()?);
+    let set = edges()?.set;
     let far = [(1e8, 1.0), (-1e8, 1.0), (1.0, 1e9), (0.0, f32::MAX), (0.0, -f32::MAX)];
     let play = |wrap: Wrap| far.map(|(start, rate)| Instance::new(0, wrap, start, rate));
-    let instances: Vec<_> = [play(Wrap::Loop), play(Wrap::Clamp)].concat();
-    let still = vec![Instance::new(0, Wrap::Loop, 0.0, 0.0); instances.len()];
-    let (clips, crowd) = (ClipBuffers::new(gpu, &edges.set)?, Crowd::new(gpu, &edges.set, &still)?);
-    crowd.instances.write(gpu, &instances)?;
-    let job = pass.prepare(gpu, &clips, &crowd)?;
-    job.set(gpu, 1e9)?;
-    gpu.submit("verify", |encoder| job.record(encoder))?;
+    let instances = [play(Wrap::Loop), play(Wrap::Clamp)].concat();
     let (at_start, at_end) =
         (Instance::new(0, Wrap::Clamp, 0.0, 0.0), Instance::new(0, Wrap::Clamp, 1.0, 0.0));
     let of = |instance: &Instance| match (instance.wrap(), instance.start < 0.0 || instance.rate < 0.0) {
@@ -159,21 +152,13 @@ async fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(),
         (Wrap::Clamp, true) if instance.rate > 0.0 => at_end,
         _ => at_start,
     };
-    let known = cursors(&edges.set, &instances.iter().map(of).collect::<Vec<_>>(), 0.0);
-    let references = cursors(&edges.set, &instances, 1e9);
-    let clip_clocks = |cursors: &[KeyframeCursor]| {
-        cursors.iter().map(|cursor| cursor.key as f32 + cursor.fraction).collect()
-    };
-    let [actual, references, known]: [Vec<f32>; 3] =
-        [&crowd.cursors.read(gpu).await?[..references.len()], &references, &known].map(clip_clocks);
-    let (actual, known) = ([actual, references].concat(), known.repeat(2));
-    cases.add("nowhere in the clip", compare::absolute(&actual, &known, KEYFRAME_CURSOR_BOUND));
-    Ok(())
+    let known = cursors(&set, &instances.iter().map(of).collect::<Vec<_>>(), 0.0);
+    let known: Vec<f32> = known.iter().map(clip_clock).collect();
+    beyond(cases, pass, ("nowhere in the clip", &set), (&instances, 1e9), &known).await
 }
 
 /// Compares loops of 8 s after millions of turns, which an f32 still resolves to 2 s.
 async fn far_away(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(), Error> {
-    let gpu = cases.gpu;
     let skeleton = random_skeleton(0, 1)?;
     let values = vec![[0.0; 4], [1.0, 0.0, 0.0, 0.0]];
     let keys = Keys { times: vec![0.0, 8.0], values, interpolation: Interpolation::Linear };
@@ -181,20 +166,35 @@ async fn far_away(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<()
     let set = ClipSet::new(&[&Clip::new("eight seconds", &skeleton, &[bone], 0.0)?])?;
     let seconds = [20_000_006.0, -20_000_006.0, 16_777_218.0];
     let instances = seconds.map(|start| Instance::new(0, Wrap::Loop, start, 0.0));
-    let still = [Instance::new(0, Wrap::Loop, 0.0, 0.0); 3];
-    let (clips, crowd) = (ClipBuffers::new(gpu, &set)?, Crowd::new(gpu, &set, &still)?);
-    crowd.instances.write(gpu, &instances)?;
+    beyond(cases, pass, ("after millions of turns", &set), (&instances, 0.0), &[0.75, 0.25, 0.25]).await
+}
+
+/// Compares instances whose times are beyond those of valid ones with known keys and fractions, on the device and by the reference.
+/// They are written to the device's buffer.
+async fn beyond(
+    cases: &mut Cases<'_>,
+    pass: &KeyframeCursorPass,
+    (name, set): (&str, &ClipSet),
+    (instances, elapsed): (&[Instance], f32),
+    known: &[f32],
+) -> Result<(), Error> {
+    let gpu = cases.gpu;
+    let still = vec![Instance::new(0, Wrap::Loop, 0.0, 0.0); instances.len()];
+    let (clips, crowd) = (ClipBuffers::new(gpu, set)?, Crowd::new(gpu, set, &still)?);
+    crowd.instances.write(gpu, instances)?;
     let job = pass.prepare(gpu, &clips, &crowd)?;
-    job.set(gpu, 0.0)?;
+    job.set(gpu, elapsed)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
-    let fractions = |cursors: &[KeyframeCursor]| -> Vec<f32> {
-        cursors.iter().map(|cursor| cursor.key as f32 + cursor.fraction).collect()
-    };
-    let references = fractions(&cursors(&set, &instances, 0.0));
-    let actual = [fractions(&crowd.cursors.read(gpu).await?[..references.len()]), references].concat();
-    let known = [0.75, 0.25, 0.25].repeat(2);
-    cases.add("after millions of turns", compare::absolute(&actual, &known, KEYFRAME_CURSOR_BOUND));
+    let references = cursors(set, instances, elapsed);
+    let found = crowd.cursors.read(gpu).await?;
+    let actual: Vec<f32> = found[..references.len()].iter().chain(&references).map(clip_clock).collect();
+    cases.add(name, compare::absolute(&actual, &known.repeat(2), KEYFRAME_CURSOR_BOUND));
     Ok(())
+}
+
+/// A key and the fraction after it, as one number.
+fn clip_clock(cursor: &KeyframeCursor) -> f32 {
+    cursor.key as f32 + cursor.fraction
 }
 
 /// Compares cursors that are known without a reference.
@@ -205,7 +205,6 @@ async fn at_edges(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<()
     job.set(gpu, ELAPSED)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
     let found = crowd.cursors.read(gpu).await?;
-    let clip_clock = |cursor: &KeyframeCursor| cursor.key as f32 + cursor.fraction;
     let (mut actual, mut expected) = (Vec::new(), Vec::new());
     for (found, known) in found.chunks(edges.set.timelines_a_clip()).zip(edges.cursors()) {
         actual.extend(found[..known.len()].iter().map(clip_clock));

@@ -69,7 +69,8 @@ async fn check_regions(cases: &mut Cases<'_>, config: &TerrainConfig, coarser: u
     let output = Poisoned::new(gpu, 3 * 21 * 21)?;
     let scratch = HeightScratch::for_regions(gpu, config, regions)?;
     let buffers = HeightBuffers { output: &output.buffer, scratch: &scratch };
-    let job = RegionPass::new(gpu, config, None)?.prepare_regions(gpu, config, regions, 0, buffers)?;
+    let pass = RegionPass::new(gpu, config, None)?;
+    let job = pass.prepare_regions(gpu, config, regions, 0, buffers, None)?;
     let none = Features::default();
     job.set_regions(&mut &*gpu, &firsts, &none)?;
     gpu.submit("verify", |encoder| job.record(encoder))?;
