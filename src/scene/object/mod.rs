@@ -125,8 +125,8 @@ impl Object {
         source: &TerrainSource,
     ) -> Result<Self, Error> {
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
-        if let Some(endless) = source.endless_recipe()? {
-            let (terrain, instances, drawn) = terrain::endless::made(gpu, layouts, source, endless)?;
+        if let Some((recipe, limits)) = source.endless_recipe()? {
+            let (terrain, instances, drawn) = terrain::endless::made(gpu, layouts, source, recipe, limits)?;
             return Ok(Self::new(terrain, (instances, sphere), (vec![0.0], 1.0), drawn));
         }
         let (terrain, instances, drawn) = terrain::made(gpu, layouts, source).await?;

@@ -64,7 +64,7 @@ pub(in crate::scene) async fn made(
         let margin = (part.width - config.patch_size) / 2;
         for ((at, patch), heights) in (first..).zip(shown).zip(&part.read(gpu).await?) {
             ground.insert(*patch, heights, margin)?;
-            let (placement, sphere) = placed(config, (at, *patch), extremes(heights))?;
+            let (placement, sphere) = placed(config, at, *patch, extremes(heights))?;
             instances.spawn(&placement, &sphere);
         }
         let drawable = drawable((gpu, layouts), (source, &zones, &triangles), part, (first, shown))?;
@@ -95,11 +95,7 @@ pub(super) fn zones_of(gpu: &Gpu, source: &TerrainSource) -> Result<Materials, E
 }
 
 /// The parameters with which a terrain is drawn. A patch has `size` samples along an edge, and its rows have `width` heights.
-pub(super) fn params_of(
-    source: &TerrainSource,
-    (width, size): (u32, u32),
-    zones: &Materials,
-) -> TerrainParams {
+pub(super) fn params_of(source: &TerrainSource, width: u32, size: u32, zones: &Materials) -> TerrainParams {
     let config = source.config();
     TerrainParams {
         in_width: width,
@@ -131,7 +127,7 @@ fn drawable(
     let config = source.config();
     let params = TerrainParams {
         first_patch: first as u32,
-        ..params_of(source, (fields.width, config.patch_size), zones)
+        ..params_of(source, fields.width, config.patch_size, zones)
     };
     let patches = Buffer::new(gpu, "patches", fields.count.max(1) as usize)?;
     if !shown.is_empty() {

@@ -77,7 +77,7 @@ impl Terrain {
         *current = morph;
         for ((at, patch), heights) in self.source.patches.iter().enumerate().zip(morphing.set(morph)) {
             self.ground.insert(*patch, &heights, MARGIN)?;
-            let (_, sphere) = placed(self.source.config(), (at, *patch), extremes(&heights))?;
+            let (_, sphere) = placed(self.source.config(), at, *patch, extremes(&heights))?;
             instances.change(at as u32, |instance| instances::bound(instance, &sphere));
         }
         Ok(())
@@ -109,7 +109,7 @@ impl Terrain {
             let bound = "must be the lowest and the highest, both finite";
             return Err(InputError::new("heights", format!("{heights:?}"), bound));
         }
-        let place = |(at, patch): (usize, &[i32; 2])| placed(config, (at, *patch), heights);
+        let place = |(at, patch): (usize, &[i32; 2])| placed(config, at, *patch, heights);
         let places = patches.iter().enumerate().map(place).collect::<Result<Vec<_>, _>>()?;
         let old = std::mem::replace(&mut self.source.patches, patches.to_vec());
         let stays = |at: usize| old.get(at).is_some_and(|patch| patches.get(at) == Some(patch));
@@ -137,7 +137,7 @@ impl Terrain {
         let (config, margin) = (self.source.config(), self.margin()?);
         for ((at, patch), heights) in self.source.patches.iter().enumerate().zip(heights) {
             self.ground.insert(*patch, heights, margin)?;
-            let (_, sphere) = placed(config, (at, *patch), extremes(heights))?;
+            let (_, sphere) = placed(config, at, *patch, extremes(heights))?;
             instances.change(at as u32, |instance| instances::bound(instance, &sphere));
         }
         Ok(())
@@ -162,7 +162,8 @@ fn extremes(heights: &[i32]) -> [f64; 2] {
 /// [`InputError`] for a patch beyond the last cell of the world.
 fn placed(
     config: &TerrainConfig,
-    (at, patch): (usize, [i32; 2]),
+    at: usize,
+    patch: [i32; 2],
     [lowest, highest]: [f64; 2],
 ) -> Result<(Placement, BoundingSphere), InputError> {
     let edge = config.edge_length();

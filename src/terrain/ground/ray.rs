@@ -30,7 +30,7 @@ impl Ground {
             let [enter, leave] = slab([0.0, edge], at, direction)?;
             (from, to) = (f64::max(from, enter), f64::min(to, leave));
         }
-        let mut walk = Walk::new([at, direction], from, (self.spacing, cells));
+        let mut walk = Walk::new([at, direction], from, self.spacing, cells);
         while from <= to {
             let [column, row] = walk.cell;
             let corner = |dx: usize, dz: usize| {
@@ -76,7 +76,7 @@ struct Walk {
 }
 
 impl Walk {
-    fn new([at, direction]: [DVec3; 2], from: f64, (spacing, cells): (f64, usize)) -> Self {
+    fn new([at, direction]: [DVec3; 2], from: f64, spacing: f64, cells: usize) -> Self {
         let start = at + from * direction;
         let axes = [(at.x, direction.x, start.x), (at.z, direction.z, start.z)];
         // The conversion to `usize` saturates, so that a huge start position gives the last cell.

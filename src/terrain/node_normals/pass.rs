@@ -40,7 +40,8 @@ impl NodeNormalsPass {
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        (shape, spacing): (NodeShape, f64),
+        shape: NodeShape,
+        spacing: f64,
         count: u32,
         buffers: NodeNormalsBuffers<'_>,
     ) -> Result<Job, Error> {

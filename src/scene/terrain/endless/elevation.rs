@@ -221,7 +221,8 @@ impl Elevation {
         &self,
         config: &TerrainConfig,
         offsets: &FeatureOffsets,
-        (region, plain): (Region, &[i32]),
+        region: Region,
+        plain: &[i32],
         cells: [RangeInclusive<i64>; 2],
     ) -> Result<Option<Beyond>, Error> {
         if region.coarser <= self.coarser() {
@@ -383,7 +384,7 @@ mod tests {
                     true => elevation.plain(node).expect("loaded").expect("there"),
                     false => Vec::new(),
                 };
-                let found = elevation.beyond(&config, &offsets, (node, &plain), cells.clone());
+                let found = elevation.beyond(&config, &offsets, node, &plain, cells.clone());
                 let found = found.expect("loaded").expect("there");
                 let (generated, _) = exact(&config, |of| region(&config, &generated, of), coarser, first);
                 let without = remainder(&config, coarser, generated);
@@ -393,7 +394,7 @@ mod tests {
                     Beyond::Further(distance) => without + distance,
                 };
                 let bound = bound_of(found);
-                let bare = bare.beyond(&config, &no_offsets, (node, &plain), cells);
+                let bare = bare.beyond(&config, &no_offsets, node, &plain, cells);
                 lacking += usize::from(largest > bound_of(bare.expect("loaded").expect("there")) as f64);
                 let own = heights(node).into_iter().map(i64::from);
                 let range = [own.clone().min(), own.max()].map(|height| height.expect("some"));

@@ -33,6 +33,7 @@ const KEPT: usize = 64;
 pub(super) struct Erosion {
     recipe: Recipe,
     limit: ErosionLimit,
+    grid: Grid,
     pass: ErosionPass,
     limiting: LimitPass,
     /// Regions with the samples around them that erosion needs. Its iterations alternate between both.
@@ -141,7 +142,8 @@ impl Erosion {
     /// [`GpuError`].
     pub fn new(
         gpu: &Gpu,
-        (recipe, limit): (&Recipe, ErosionLimit),
+        recipe: &Recipe,
+        limit: ErosionLimit,
         grid: Grid,
         regions: Regions,
     ) -> Result<Self, Error> {
@@ -158,6 +160,7 @@ impl Erosion {
             blocks: blocks.transpose()?,
             recipe: recipe.clone(),
             limit,
+            grid,
             pass,
             limiting: LimitPass::new(gpu)?,
             windows,
@@ -170,14 +173,14 @@ impl Erosion {
     }
 
     /// The region that is generated and eroded for a node.
-    pub fn around(&self, grid: Grid, node: Node) -> Region {
+    pub fn around(&self, node: Node) -> Region {
         let block = self.blocks_of(node.level).map_or(node, |blocks| node.ancestor(blocks.level));
-        grid.region_of(block).grown(self.recipe.apron(0))
+        self.grid.region_of(block).grown(self.recipe.apron(0))
     }
 
     /// Forgets the blocks whose region, with the samples around it, is changed.
-    pub fn forget(&mut self, grid: Grid, is_changed: impl Fn(Region) -> bool) {
-        let apron = self.recipe.apron(0);
+    pub fn forget(&mut self, is_changed: impl Fn(Region) -> bool) {
+        let (grid, apron) = (self.grid, self.recipe.apron(0));
         let Some(Blocks { kept, free, .. }) = &mut self.blocks else { return };
         kept.retain(|node, block| {
             let is_good = !is_changed(grid.region_of(*node).grown(apron));
@@ -203,7 +206,7 @@ impl Erosion {
     pub fn cut(
         &mut self,
         gpu: &Gpu,
-        (grid, nodes): (Grid, &[NewNode]),
+        nodes: &[NewNode],
         source: Source<'_>,
         features: &Features,
     ) -> Result<Cut, Error> {
@@ -216,12 +219,12 @@ impl Erosion {
             let block = node.ancestor(blocks.level);
             cut.new.extend(blocks.take(block, given));
             let slot = blocks.kept.get(&block).map_or(0, |kept| kept.slot);
-            let (first, start) = (grid.first_of(*node), grid.first_of(block));
+            let [first, start] = [*node, block].map(|node| self.grid.first_of(node));
             let [column, row] = [0, 1].map(|axis| (first[axis] - start[axis]) as u32);
             cut.corners.push((slot as u32 * blocks.width + row) * blocks.width + column);
         }
         for block in &cut.new {
-            self.prepare_block(gpu, (grid, block), source, features)?;
+            self.prepare_block(gpu, block, source, features)?;
         }
         Ok(cut)
     }
@@ -230,11 +233,11 @@ impl Erosion {
     fn prepare_block(
         &mut self,
         gpu: &Gpu,
-        (grid, block): (Grid, &NewBlock),
+        block: &NewBlock,
         source: Source<'_>,
         features: &Features,
     ) -> Result<(), Error> {
-        let firsts = [self.around(grid, block.node).first];
+        let firsts = [self.around(block.node).first];
         let map = source.map.filter(|_| block.given.is_some());
         while let Some(blocks) = &self.blocks {
             let room = match blocks.job(block) {
@@ -248,7 +251,7 @@ impl Erosion {
                 }
             };
             let source = Source { features: room, map, ..source };
-            let made = BlockJob { regions: self.regions(gpu, (1, blocks.width), source)?, features: room };
+            let made = BlockJob { regions: self.regions(gpu, 1, blocks.width, source)?, features: room };
             let Some(jobs) = self.blocks.as_mut().map(|blocks| &mut blocks.jobs[block.kind()]) else { break };
             match jobs.get_mut(block.job) {
                 Some(job) => *job = made,
@@ -262,19 +265,14 @@ impl Erosion {
     ///
     /// # Errors
     /// [`GpuError`].
-    fn regions(
-        &self,
-        gpu: &Gpu,
-        (count, width): (u32, u32),
-        source: Source<'_>,
-    ) -> Result<ErodedRegions, Error> {
+    fn regions(&self, gpu: &Gpu, count: u32, width: u32, source: Source<'_>) -> Result<ErodedRegions, Error> {
         let Source { generator, scratch, config, features, map } = source;
         let wide = width + 2 * self.recipe.apron(0);
         let output = HeightBuffers { output: &self.windows[0], scratch };
         let (lattice, own) = (map.filter(|map| map.coarser > 0), map.filter(|map| map.coarser == 0));
         let regions = Regions { count, width: wide, coarser: 0 };
         let around = generator.prepare_regions(gpu, config, regions, features, output, lattice)?;
-        let given = own.map(|map| replaced(gpu, map.pass, (count, wide), &self.windows[0])).transpose()?;
+        let given = own.map(|map| replaced(gpu, map.pass, count, wide, &self.windows[0])).transpose()?;
         let mut both =
             self.windows.each_ref().map(|heights| Fields { heights: heights.clone(), width: wide, count });
         both[1].width -= 2;
@@ -290,13 +288,13 @@ impl Erosion {
     pub fn prepare(
         &self,
         gpu: &Gpu,
-        (grid, level): (Grid, u32),
+        level: u32,
         source: Source<'_>,
         origins: &Buffer<i32>,
     ) -> Result<ErosionJob, Error> {
-        let (count, width) = (BATCH as u32, grid.shape(level).region_width());
+        let (count, width) = (BATCH as u32, self.grid.shape(level).region_width());
         let blocks = self.blocks_of(level);
-        let own = blocks.is_none().then(|| self.regions(gpu, (count, width), source)).transpose()?;
+        let own = blocks.is_none().then(|| self.regions(gpu, count, width, source)).transpose()?;
         // The window that does not have the eroded heights is free.
         let is_in_first = self.recipe.apron(0).is_multiple_of(2);
         let heights = self.windows[usize::from(is_in_first)].clone();
@@ -317,13 +315,13 @@ impl Erosion {
     pub fn stage(
         &self,
         staged: &mut Staged,
-        (job, cut): (&ErosionJob, &Cut),
-        (grid, nodes): (Grid, &[NewNode]),
+        job: &ErosionJob,
+        cut: &Cut,
+        nodes: &[NewNode],
         features: &Features,
     ) -> Result<(), Error> {
-        let firsts = |nodes: &[Node]| -> Vec<[i64; 2]> {
-            nodes.iter().map(|node| self.around(grid, *node).first).collect()
-        };
+        let firsts =
+            |nodes: &[Node]| -> Vec<[i64; 2]> { nodes.iter().map(|node| self.around(*node).first).collect() };
         if let Some(own) = &job.own {
             let all: Vec<Node> = nodes.iter().map(|new| new.node).collect();
             own.around.set_regions(staged, &firsts(&all), features)?;
@@ -361,13 +359,8 @@ impl Erosion {
 
 impl ErosionJob {
     /// Number of features that a batch of nodes needs room for.
-    pub fn feature_count(
-        &self,
-        erosion: &Erosion,
-        (grid, nodes): (Grid, &[NewNode]),
-        features: &Features,
-    ) -> usize {
-        let firsts: Vec<_> = nodes.iter().map(|new| erosion.around(grid, new.node).first).collect();
+    pub fn feature_count(&self, erosion: &Erosion, nodes: &[NewNode], features: &Features) -> usize {
+        let firsts: Vec<_> = nodes.iter().map(|new| erosion.around(new.node).first).collect();
         self.own.as_ref().map_or(0, |own| own.around.feature_count(&firsts, features))
     }
 }

@@ -54,7 +54,8 @@ struct Patches {
 impl FinestGround {
     pub fn new(
         recipe: &Recipe,
-        (target, erosion): (Option<(Box<Recipe>, Morph)>, Option<ErosionLimit>),
+        target: Option<(Box<Recipe>, Morph)>,
+        erosion: Option<ErosionLimit>,
         elevation: Option<Elevation>,
     ) -> Result<Self, InputError> {
         let patch_size = if erosion.is_some() { ERODED_SIZE } else { SIZE };
@@ -91,7 +92,8 @@ impl FinestGround {
     pub fn hit(
         &self,
         [mut from, to]: [f64; 2],
-        (origin, ray): (DVec3, &UnitRay),
+        origin: DVec3,
+        ray: &UnitRay,
         holes: &[TerrainHole],
     ) -> Result<Option<SurfaceHit>, InputError> {
         // A step beyond each border, so that the next patch is found whatever the rounding.

@@ -43,8 +43,10 @@ impl EndlessInView {
     pub fn new(
         gpu: &Gpu,
         layouts: &SceneLayouts,
-        (spacing, object): (f64, u32),
-        (capacity, tables): (usize, Arc<Mutex<Vec<ViewTable>>>),
+        spacing: f64,
+        object: u32,
+        capacity: usize,
+        tables: Arc<Mutex<Vec<ViewTable>>>,
     ) -> Result<Self, GpuError> {
         let uniform = Uniform::new(gpu, "terrain in a view", &nowhere(object))?;
         let nodes = Buffer::new(gpu, "nodes in a view", capacity)?;

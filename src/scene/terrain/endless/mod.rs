@@ -244,7 +244,8 @@ pub(in crate::scene) fn made(
     gpu: &Gpu,
     layouts: &SceneLayouts,
     source: &TerrainSource,
-    (recipe, limits): (&Recipe, EndlessLimits),
+    recipe: &Recipe,
+    limits: EndlessLimits,
 ) -> Result<(Endless, Instances, Drawn), Error> {
     recipe.validate(&[], 0)?;
     let mut elevation =
@@ -280,7 +281,7 @@ pub(in crate::scene) fn made(
         erosion,
     };
     let pool = Pool::new(gpu, recipes, grid, size)?;
-    let (chunks, draws) = drawn(gpu, layouts, source, (&pool, grid, capacity))?;
+    let (chunks, draws) = drawn(gpu, layouts, source, &pool)?;
     let hidden = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
     for _ in 0..capacity {
         instances.spawn(&Placement::default(), &hidden);
@@ -302,7 +303,7 @@ pub(in crate::scene) fn made(
         target_offsets: target.map(|target| offsets_of(target, None)),
         are_bounds_changed: false,
         tables: Arc::default(),
-        ground: FinestGround::new(recipe, (source.target.clone(), erosion), elevation.clone())?,
+        ground: FinestGround::new(recipe, source.target.clone(), erosion, elevation.clone())?,
         elevation,
         given_around: Vec::new(),
         holes,
@@ -320,14 +321,15 @@ fn drawn(
     gpu: &Gpu,
     layouts: &SceneLayouts,
     source: &TerrainSource,
-    (pool, grid, capacity): (&Pool, Grid, usize),
+    pool: &Pool,
 ) -> Result<(Vec<Chunk>, Vec<SceneDraw>), Error> {
     let zones = zones_of(gpu, source)?;
+    let (grid, capacity) = (pool.grid, pool.size.capacity);
     let indices = patch_indices(grid.cells + 1);
     let params = TerrainParams {
         normals_width: if pool.size.has_normals { grid.shape(0).normals_width() } else { 0 },
         erosion_depth: pool.size.erosion.map_or(0.0, |limit| limit.depth as f32),
-        ..params_of(source, (grid.shape(0).tile_width(), grid.cells + 1), &zones)
+        ..params_of(source, grid.shape(0).tile_width(), grid.cells + 1, &zones)
     };
     let geometry = TerrainGeometry {
         params: Uniform::new(gpu, "terrain", &params)?,
@@ -356,30 +358,27 @@ impl Endless {
 
     /// The ground on the host, without any patch.
     fn finest_ground(&self) -> Result<FinestGround, InputError> {
-        FinestGround::new(
-            &self.recipe,
-            (self.source.target.clone(), self.size.erosion),
-            self.elevation.clone(),
-        )
+        FinestGround::new(&self.recipe, self.source.target.clone(), self.size.erosion, self.elevation.clone())
     }
 
     /// The first hit of a ray on the finest ground of a node. Finer nodes that are there bound their parts of it more tightly.
     fn hit_below(
         &self,
         node: Node,
-        (origin, ray): (DVec3, &UnitRay),
+        origin: DVec3,
+        ray: &UnitRay,
         holes: &[TerrainHole],
     ) -> Result<Option<SurfaceHit>, InputError> {
-        let inside = |node: Node| within(self.node_box(node), (origin, ray));
+        let inside = |node: Node| within(self.node_box(node), origin, ray);
         let Some(distances) = inside(node) else { return Ok(None) };
         let children = node.children();
         if node.level == 0 || children.iter().all(|child| self.facts(*child).is_none()) {
-            return self.ground.hit(distances, (origin, ray), holes);
+            return self.ground.hit(distances, origin, ray, holes);
         }
         let mut parts: Vec<_> =
             children.into_iter().filter_map(|child| Some((inside(child)?, child))).collect();
         parts.sort_by(|([one, _], _), ([other, _], _)| one.total_cmp(other));
-        let hits = parts.into_iter().map(|(_, child)| self.hit_below(child, (origin, ray), holes));
+        let hits = parts.into_iter().map(|(_, child)| self.hit_below(child, origin, ray, holes));
         hits.filter_map(Result::transpose).next().transpose()
     }
 
@@ -537,9 +536,8 @@ impl Endless {
             let Some(resident) = self.residents.get_mut(node) else { continue };
             let beyond = resident.beyond;
             let of = |config: &TerrainConfig, offsets: &FeatureOffsets, FoundFacts { own, other }| {
-                let below = |own, other| {
-                    facts_of((config, offsets), (grid, *node), &FoundFacts { own, other }, beyond)
-                };
+                let below =
+                    |own, other| facts_of(config, offsets, grid, *node, &FoundFacts { own, other }, beyond);
                 match (self.size.erosion, other) {
                     (None, _) => below(own, other),
                     (Some(limit), Some(eroded)) if grid.is_eroded(self.size, node.level) => {
@@ -706,7 +704,7 @@ impl Endless {
         let own_region = self.pool.given_region(config, region);
         let own = map.plain(own_region)?;
         let plain = own.as_deref().unwrap_or_default();
-        let beyond = map.beyond(config, &self.offsets, (region, plain), self.grid.cells_of(node))?;
+        let beyond = map.beyond(config, &self.offsets, region, plain, self.grid.cells_of(node))?;
         if let Some(around) = around
             && !self.given_around.iter().any(|(region, _)| *region == around)
         {
@@ -791,7 +789,8 @@ impl Endless {
     /// Chooses what the views of a frame draw, and what the frame makes. Returns the instances that are placed anew.
     fn choose(
         &mut self,
-        (views, limits): (&[SelectView], &[Option<u32>]),
+        views: &[SelectView],
+        limits: &[Option<u32>],
         fraction: f32,
     ) -> Result<Vec<Node>, Error> {
         let views = &views.iter().map(with_pixels).collect::<Vec<_>>()[..];
@@ -824,7 +823,7 @@ impl Endless {
         let (mut wanted, mut split, mut drawn, mut unknown, mut levels) = (0, 0, 0, 0, [0; 18]);
         for (index, view) in views.iter().enumerate() {
             let limit = limits.get(index).copied().flatten();
-            let (bias, cover) = self.within_limit(view, fraction, &roots, (limit, self.view_biases[index]));
+            let (bias, cover) = self.within_limit(view, fraction, &roots, limit, self.view_biases[index]);
             self.view_biases[index] = bias;
             let fraction = fraction * bias;
             (wanted, split, drawn) =
@@ -879,7 +878,8 @@ impl Endless {
         view: &SelectView,
         fraction: f32,
         roots: &BTreeSet<Node>,
-        (limit, last): (Option<u32>, f32),
+        limit: Option<u32>,
+        last: f32,
     ) -> (f32, Cover) {
         let cover_at = |bias: f32| {
             let is_wanted = |node: Node| self.is_beyond(view, fraction * bias, node);
@@ -917,10 +917,11 @@ impl Endless {
     fn chosen(
         &mut self,
         gpu: &Gpu,
-        views: (&[SelectView], &[Option<u32>]),
+        views: &[SelectView],
+        limits: &[Option<u32>],
         fraction: f32,
     ) -> Result<Provided, Error> {
-        let moved = self.choose(views, fraction)?;
+        let moved = self.choose(views, limits, fraction)?;
         self.pool.make(gpu, Recipes::new(&self.recipe, &self.source), &self.new)?;
         let placed = moved.into_iter().filter_map(|node| Some((node, self.residents.get(&node)?.slot)));
         let placed = placed.map(|(node, slot)| {
@@ -1027,7 +1028,7 @@ fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
 
 /// The distances at which a ray enters and leaves a box, within its limit; `None` if it misses the box. `origin` is the ray's in world
 /// units.
-fn within([low, high]: [DVec3; 2], (origin, ray): (DVec3, &UnitRay)) -> Option<[f64; 2]> {
+fn within([low, high]: [DVec3; 2], origin: DVec3, ray: &UnitRay) -> Option<[f64; 2]> {
     let mut axes = (0..3).map(|axis| slab([low[axis], high[axis]], origin[axis], ray.direction[axis]));
     let within = |[from, to]: [f64; 2], [enter, leave]: [f64; 2]| [from.max(enter), to.min(leave)];
     let [from, to] = axes.try_fold([0.0, ray.limit], |all, axis| Some(within(all, axis?)))?;
@@ -1036,8 +1037,10 @@ fn within([low, high]: [DVec3; 2], (origin, ray): (DVec3, &UnitRay)) -> Option<[
 
 /// The facts of a node, from what the device found and what lies below, finer injected heights among it.
 fn facts_of(
-    (config, offsets): (&TerrainConfig, &FeatureOffsets),
-    (grid, node): (Grid, Node),
+    config: &TerrainConfig,
+    offsets: &FeatureOffsets,
+    grid: Grid,
+    node: Node,
     FoundFacts { own, other: generated }: &FoundFacts,
     beyond: Beyond,
 ) -> Facts {
@@ -1114,9 +1117,8 @@ impl ObjectKind for Endless {
     fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a> {
         let MakeOn { gpu, layouts, .. } = target;
         Box::pin(async move {
-            let capacity = self.statistics.capacity;
             let pool = Pool::new(gpu, Recipes::new(&self.recipe, &self.source), self.grid, self.size)?;
-            let (chunks, _) = drawn(gpu, layouts, &self.source, (&pool, self.grid, capacity))?;
+            let (chunks, _) = drawn(gpu, layouts, &self.source, &pool)?;
             Ok(OnDevice { chunks, other: Box::new(pool) })
         })
     }
@@ -1136,7 +1138,7 @@ impl ObjectKind for Endless {
         number: u32,
     ) -> Result<Option<Box<dyn KindInView>>, Error> {
         let (spacing, capacity) = (self.config().terrain_scale, self.statistics.capacity);
-        let in_view = EndlessInView::new(gpu, layouts, (spacing, number), (capacity, self.tables.clone()))?;
+        let in_view = EndlessInView::new(gpu, layouts, spacing, number, capacity, self.tables.clone())?;
         Ok(Some(Box::new(in_view)))
     }
 
@@ -1149,8 +1151,8 @@ impl ObjectKind for Endless {
     ) -> Result<Provided, Error> {
         let asked = seen.views.iter().flat_map(SelectView::cameras).map(|camera| camera.pixels);
         self.is_bounded = asked.fold(f32::INFINITY, f32::min) >= LEAST_PIXELS;
-        let views = (seen.views, seen.triangle_limits);
-        let provided = self.chosen(gpu, views, seen.object.metric_scale * self.lod_bias);
+        let fraction = seen.object.metric_scale * self.lod_bias;
+        let provided = self.chosen(gpu, seen.views, seen.triangle_limits, fraction);
         if provided.is_err() {
             self.undo();
         }
@@ -1162,11 +1164,11 @@ impl ObjectKind for Endless {
         if std::mem::take(&mut self.are_holes_changed) {
             let finest = self.residents.iter().filter(|(node, _)| node.level == 0);
             for (node, Resident { slot, .. }) in finest {
-                self.pool.stage_patch(staged, config, (*node, *slot), holes)?;
+                self.pool.stage_patch(staged, config, *node, *slot, holes)?;
             }
         }
         let time = self.source.target.as_ref().map_or_else(Morph::default, |(_, time)| *time);
-        self.pool.stage(staged, (Recipes::new(&self.recipe, &self.source), time), holes)
+        self.pool.stage(staged, Recipes::new(&self.recipe, &self.source), time, holes)
     }
 
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {
@@ -1182,7 +1184,7 @@ impl ObjectKind for Endless {
             return Ok(None);
         };
         let (origin, holes) = (Placement::corner(instance.cell) + ray.origin, self.holes.as_deref());
-        self.hit_below(*node, (origin, ray), holes.unwrap_or_default())
+        self.hit_below(*node, origin, ray, holes.unwrap_or_default())
     }
 
     fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {

@@ -58,7 +58,7 @@ pub(super) struct Pool {
     pub normals: Buffer<u32>,
     pub size: PoolSize,
     ring: ReadbackRing<u64>,
-    grid: Grid,
+    pub grid: Grid,
     pass: NodePass,
     /// `None` for nodes without normals, for which this pipeline is not compiled.
     normals_pass: Option<NodeNormalsPass>,
@@ -310,7 +310,7 @@ impl Pool {
         let end = |recipe: &Recipe| -> Result<End, Error> {
             // The widest regions with the most subdivisions need the largest scratch.
             let regions = Regions { count: BATCH as u32, width: width + 2 * recipe.apron(0), coarser: 0 };
-            let erosion = |limit| Erosion::new(gpu, (recipe, limit), grid, regions);
+            let erosion = |limit| Erosion::new(gpu, recipe, limit, grid, regions);
             let injection = recipe.features.injection();
             Ok(End {
                 generator: RegionPass::new(gpu, &recipe.config, injection)?,
@@ -413,21 +413,22 @@ impl Pool {
             };
             let own: Vec<NewNode> = new.iter().filter(is_own).cloned().collect();
             for (job, nodes) in own.chunks(BATCH).enumerate() {
-                let (of, recipe) = ((level as u32, kind), recipes.of(kind));
+                let recipe = recipes.of(kind);
                 if self.jobs[kind as usize][level].len() <= job {
-                    let made = self.job(gpu, &recipe.config, of, 0)?;
+                    let made = self.job(gpu, &recipe.config, level as u32, kind, 0)?;
                     self.jobs[kind as usize][level].push(made);
                 }
                 let firsts: Vec<[i64; 2]> = nodes.iter().map(|new| self.grid.first_of(new.node)).collect();
                 let BatchJob { heights, features: room, erosion, .. } = &self.jobs[kind as usize][level][job];
                 let eroded = erosion.as_ref().zip(self.ends[kind.end()].erosion.as_ref());
                 let around = eroded.map_or(0, |(eroded, erosion)| {
-                    eroded.erosion.feature_count(erosion, (self.grid, nodes), &recipe.features)
+                    eroded.erosion.feature_count(erosion, nodes, &recipe.features)
                 });
                 let needed = heights.feature_count(&firsts, &recipe.features).max(around);
                 if needed > *room {
+                    let room = needed.next_power_of_two();
                     self.jobs[kind as usize][level][job] =
-                        self.job(gpu, &recipe.config, of, needed.next_power_of_two())?;
+                        self.job(gpu, &recipe.config, level as u32, kind, room)?;
                 }
                 let cut = self.cut(gpu, recipe, kind, nodes)?;
                 self.batches.push(Batch { heights: kind, level, job, nodes: nodes.to_vec(), cut });
@@ -447,7 +448,7 @@ impl Pool {
         let map = given_by(self.size, self.replace.as_ref(), kind);
         let End { generator, scratch, erosion, .. } = &mut self.ends[kind.end()];
         let source = Source { generator, scratch, config, features: 0, map };
-        let cut = erosion.as_mut().map(|erosion| erosion.cut(gpu, (self.grid, nodes), source, features));
+        let cut = erosion.as_mut().map(|erosion| erosion.cut(gpu, nodes, source, features));
         cut.unwrap_or(Ok(Cut::default()))
     }
 
@@ -455,13 +456,12 @@ impl Pool {
     pub fn around(&self, node: Node) -> Option<Region> {
         let erosion = self.ends[0].erosion.as_ref();
         let erosion = erosion.filter(|_| self.grid.is_eroded(self.size, node.level))?;
-        Some(erosion.around(self.grid, node))
+        Some(erosion.around(node))
     }
 
     /// Forgets the eroded ground whose region is changed.
     pub fn forget_eroded(&mut self, is_changed: impl Fn(Region) -> bool) {
-        let grid = self.grid;
-        self.erosions().for_each(|erosion| erosion.forget(grid, &is_changed));
+        self.erosions().for_each(|erosion| erosion.forget(&is_changed));
     }
 
     fn erosions(&mut self) -> impl Iterator<Item = &mut Erosion> {
@@ -479,7 +479,8 @@ impl Pool {
         &self,
         gpu: &Gpu,
         config: &TerrainConfig,
-        (level, kind): (u32, Heights),
+        level: u32,
+        kind: Heights,
         features: usize,
     ) -> Result<BatchJob, Error> {
         let shape = self.grid.shape(level);
@@ -503,14 +504,14 @@ impl Pool {
                 Ok((facts_of(&slots)?, slots))
             };
             let generated = (!self.grid.is_eroded(self.size, level)).then(generated).transpose()?;
-            let (heights, replace) = replaced(gpu, pass, (BATCH as u32, width), &self.heights)?;
+            let (heights, replace) = replaced(gpu, pass, BATCH as u32, width, &self.heights)?;
             Ok(GivenJob { generated, heights, replace })
         };
         let given = own.map(given).transpose()?;
         let nodes = facts_of(&slots)?;
         let eroded = |erosion: &Erosion| -> Result<_, Error> {
             let source = Source { generator, scratch, config, features, map };
-            let erosion = erosion.prepare(gpu, (self.grid, level), source, &self.heights)?;
+            let erosion = erosion.prepare(gpu, level, source, &self.heights)?;
             let slots = Buffer::new(gpu, "slots of eroded nodes", BATCH)?;
             let buffers = NodeBuffers { heights: &erosion.heights, slots: &slots, tiles, facts };
             let nodes = self.pass.prepare(gpu, shape, count, buffers)?;
@@ -521,7 +522,7 @@ impl Pool {
             let heights = erosion.as_ref().map_or(&self.heights, |eroded| &eroded.erosion.heights);
             let buffers = NodeNormalsBuffers { heights, slots: &slots, normals: &self.normals };
             let spacing = config.terrain_scale * f64::from(1_u32 << coarser);
-            pass.prepare(gpu, (shape, spacing), count, buffers)
+            pass.prepare(gpu, shape, spacing, count, buffers)
         };
         let normals = self.normals_pass.as_ref().filter(|_| shape.finer > 0).map(normals).transpose()?;
         Ok(BatchJob { heights, features, given, slots, nodes, erosion, normals })
@@ -534,7 +535,8 @@ impl Pool {
     pub fn stage(
         &self,
         staged: &mut Staged,
-        (recipes, time): (Recipes<'_>, Morph),
+        recipes: Recipes<'_>,
+        time: Morph,
         holes: &[TerrainHole],
     ) -> Result<(), Error> {
         if let Some(blend) = self.blend.as_ref().filter(|blend| blend.is_due) {
@@ -555,7 +557,7 @@ impl Pool {
             }
             if let (Some(job), Some(erosion)) = (&job.erosion, &end.erosion) {
                 staged.elements(&job.slots, 0, &generated)?;
-                erosion.stage(staged, (&job.erosion, cut), (self.grid, nodes), features)?;
+                erosion.stage(staged, &job.erosion, cut, nodes, features)?;
             }
             for (number, new) in nodes.iter().enumerate() {
                 let Some(NodeElevation { heights, .. }) = &new.elevation else { continue };
@@ -567,7 +569,7 @@ impl Pool {
             let none = [0; NODE_FACTS as usize];
             for new in nodes {
                 if *heights != Heights::Target {
-                    self.stage_patch(staged, config, (new.node, new.slot), holes)?;
+                    self.stage_patch(staged, config, new.node, new.slot, holes)?;
                 }
                 for row in (new.slot as usize..self.size.rows()).step_by(self.size.capacity) {
                     staged.elements(&end.facts, row * NODE_FACTS as usize, &none)?;
@@ -593,10 +595,11 @@ impl Pool {
         &self,
         staged: &mut Staged,
         config: &TerrainConfig,
-        (node, slot): (Node, u32),
+        node: Node,
+        slot: u32,
         holes: &[TerrainHole],
     ) -> Result<(), Error> {
-        let mut patch = patch_of(config, self.grid, (node, slot));
+        let mut patch = patch_of(config, self.grid, node, slot);
         if self.grid.is_eroded(self.size, node.level) {
             patch.eroded = self.size.capacity as u32 + slot;
         }
@@ -654,7 +657,8 @@ fn given_by(size: PoolSize, pass: Option<&ReplacePass>, kind: Heights) -> Option
 pub(super) fn replaced(
     gpu: &Gpu,
     pass: &ReplacePass,
-    (count, width): (u32, u32),
+    count: u32,
+    width: u32,
     heights: &Buffer<i32>,
 ) -> Result<(Buffer<i32>, Job), Error> {
     let given = Buffer::new(gpu, "given heights", count as usize * (width as usize).pow(2))?;
@@ -663,7 +667,7 @@ pub(super) fn replaced(
 }
 
 /// A node in the format of the shader that draws it.
-fn patch_of(config: &TerrainConfig, grid: Grid, (node, slot): (Node, u32)) -> TerrainPatch {
+fn patch_of(config: &TerrainConfig, grid: Grid, node: Node, slot: u32) -> TerrainPatch {
     let edge = (grid.cells as i32) << node.level;
     let tiles = config.tiles_per_patch() / f64::from(config.patch_size - 1) * f64::from(edge);
     TerrainPatch {

@@ -41,7 +41,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             }
             let slots = Buffer::from_slice(gpu, "slots", &slots)?;
             let buffers = NodeNormalsBuffers { heights: &regions, slots: &slots, normals: &normals.buffer };
-            let job = pass.prepare(gpu, (shape, spacing), 3, buffers)?;
+            let job = pass.prepare(gpu, shape, spacing, 3, buffers)?;
             gpu.submit("verify", |encoder| job.record(encoder))?;
             let name = format!("{size}×{size}, {finer} levels finer, heights to {limit}, spacing {spacing}");
             let expected = halves(&expected);
@@ -71,7 +71,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let count = (shape.normals_width() as usize).pow(2);
     let normals = Buffer::new(gpu, "normals", 4 * count)?;
     let buffers = NodeNormalsBuffers { heights: &regions, slots: &slots, normals: &normals };
-    let job = NodeNormalsPass::new(gpu)?.prepare(gpu, (shape, 1.0), 4, buffers)?;
+    let job = NodeNormalsPass::new(gpu)?.prepare(gpu, shape, 1.0, 4, buffers)?;
     measure(
         bench,
         "65x65 3 finer batch 4",
