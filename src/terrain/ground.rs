@@ -10,7 +10,7 @@ use crate::terrain::export::cropped;
 use crate::terrain::mesh::{FRACTION_ONE, GroundPoint, HeightField, sample_and_fraction};
 pub use ray::GroundHit;
 #[cfg(feature = "gpu")]
-pub(crate) use ray::slab;
+pub(crate) use ray::{slab, within};
 
 /// Heights of patches on the CPU, for queries of the ground. All patches have the same configuration.
 ///

@@ -25,11 +25,8 @@ impl Ground {
         let field = self.patches.get(&patch)?;
         let cells = self.size as usize - 1;
         let edge = self.spacing * cells as f64;
-        let [mut from, mut to] = [0.0, limit];
-        for (at, direction) in [(at.x, direction.x), (at.z, direction.z)] {
-            let [enter, leave] = slab([0.0, edge], at, direction)?;
-            (from, to) = (f64::max(from, enter), f64::min(to, leave));
-        }
+        let corners = [(0.0, f64::NEG_INFINITY), (edge, f64::INFINITY)].map(|(at, y)| DVec3::new(at, y, at));
+        let [mut from, to] = within(corners, at, direction, limit)?;
         let mut walk = Walk::new([at, direction], from, self.spacing, cells);
         while from <= to {
             let [column, row] = walk.cell;
@@ -52,6 +49,16 @@ impl Ground {
         }
         None
     }
+}
+
+/// Distances from 0 to `limit` at which a ray enters and leaves a box, which may be infinite; `None` if it misses the box.
+pub(crate) fn within([low, high]: [DVec3; 2], at: DVec3, direction: DVec3, limit: f64) -> Option<[f64; 2]> {
+    let [mut from, mut to] = [0.0, limit];
+    for axis in 0..3 {
+        let [enter, leave] = slab([low[axis], high[axis]], at[axis], direction[axis])?;
+        (from, to) = (f64::max(from, enter), f64::min(to, leave));
+    }
+    (from <= to).then_some([from, to])
 }
 
 /// Distances at which a ray enters and leaves a slab between two planes across an axis; `None` if the ray is parallel to the slab and

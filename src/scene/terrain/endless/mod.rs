@@ -38,7 +38,7 @@ use crate::shared::render::scene_terrain::{MORPH_START, STITCHED, TerrainFrame, 
 use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::features::Features;
-use crate::terrain::ground::slab;
+use crate::terrain::ground::within;
 use crate::terrain::injection::{ChangedPoint, FeatureOffsets};
 use crate::terrain::limit::ErosionLimit;
 use crate::terrain::mesh::GroundPoint;
@@ -361,24 +361,24 @@ impl Endless {
         FinestGround::new(&self.recipe, self.source.target.clone(), self.size.erosion, self.elevation.clone())
     }
 
-    /// The first hit of a ray on the finest ground of a node. Finer nodes that are there bound their parts of it more tightly.
+    /// The first hit of a ray on the finest ground of a node, whose box it enters and leaves at `distances`. Finer nodes that are there
+    /// bound their parts of the ground more tightly.
     fn hit_below(
         &self,
         node: Node,
+        distances: [f64; 2],
         origin: DVec3,
         ray: &UnitRay,
         holes: &[TerrainHole],
     ) -> Result<Option<SurfaceHit>, InputError> {
-        let inside = |node: Node| within(self.node_box(node), origin, ray);
-        let Some(distances) = inside(node) else { return Ok(None) };
         let children = node.children();
         if node.level == 0 || children.iter().all(|child| self.facts(*child).is_none()) {
             return self.ground.hit(distances, origin, ray, holes);
         }
-        let mut parts: Vec<_> =
-            children.into_iter().filter_map(|child| Some((inside(child)?, child))).collect();
-        parts.sort_by(|([one, _], _), ([other, _], _)| one.total_cmp(other));
-        let hits = parts.into_iter().map(|(_, child)| self.hit_below(child, origin, ray, holes));
+        let entered = |child| Some((child, within(self.node_box(child), origin, ray.direction, ray.limit)?));
+        let mut parts: Vec<_> = children.into_iter().filter_map(entered).collect();
+        parts.sort_by(|(_, [one, _]), (_, [other, _])| one.total_cmp(other));
+        let hits = parts.into_iter().map(|(child, at)| self.hit_below(child, at, origin, ray, holes));
         hits.filter_map(Result::transpose).next().transpose()
     }
 
@@ -1026,15 +1026,6 @@ fn allowed_around(camera: &LodCamera, center: Vec3, radius: f32) -> f32 {
     OUTSIDE * LodCamera { ahead: towards / distance, ..*camera }.allows(center, radius)
 }
 
-/// The distances at which a ray enters and leaves a box, within its limit; `None` if it misses the box. `origin` is the ray's in world
-/// units.
-fn within([low, high]: [DVec3; 2], origin: DVec3, ray: &UnitRay) -> Option<[f64; 2]> {
-    let mut axes = (0..3).map(|axis| slab([low[axis], high[axis]], origin[axis], ray.direction[axis]));
-    let within = |[from, to]: [f64; 2], [enter, leave]: [f64; 2]| [from.max(enter), to.min(leave)];
-    let [from, to] = axes.try_fold([0.0, ray.limit], |all, axis| Some(within(all, axis?)))?;
-    (from <= to).then_some([from, to])
-}
-
 /// The facts of a node, from what the device found and what lies below, finer injected heights among it.
 fn facts_of(
     config: &TerrainConfig,
@@ -1184,7 +1175,9 @@ impl ObjectKind for Endless {
             return Ok(None);
         };
         let (origin, holes) = (Placement::corner(instance.cell) + ray.origin, self.holes.as_deref());
-        self.hit_below(*node, origin, ray, holes.unwrap_or_default())
+        let distances = within(self.node_box(*node), origin, ray.direction, ray.limit);
+        let Some(distances) = distances else { return Ok(None) };
+        self.hit_below(*node, distances, origin, ray, holes.unwrap_or_default())
     }
 
     fn tight_box(&self, instance: &Placed) -> Result<[DVec3; 2], InputError> {

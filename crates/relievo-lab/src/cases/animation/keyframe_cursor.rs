@@ -154,7 +154,7 @@ async fn nowhere(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<(),
     };
     let known = cursors(&set, &instances.iter().map(of).collect::<Vec<_>>(), 0.0);
     let known: Vec<f32> = known.iter().map(clip_clock).collect();
-    beyond(cases, pass, ("nowhere in the clip", &set), (&instances, 1e9), &known).await
+    beyond(cases, pass, "nowhere in the clip", &set, &instances, 1e9, &known).await
 }
 
 /// Compares loops of 8 s after millions of turns, which an f32 still resolves to 2 s.
@@ -166,7 +166,7 @@ async fn far_away(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<()
     let set = ClipSet::new(&[&Clip::new("eight seconds", &skeleton, &[bone], 0.0)?])?;
     let seconds = [20_000_006.0, -20_000_006.0, 16_777_218.0];
     let instances = seconds.map(|start| Instance::new(0, Wrap::Loop, start, 0.0));
-    beyond(cases, pass, ("after millions of turns", &set), (&instances, 0.0), &[0.75, 0.25, 0.25]).await
+    beyond(cases, pass, "after millions of turns", &set, &instances, 0.0, &[0.75, 0.25, 0.25]).await
 }
 
 /// Compares instances whose times are beyond those of valid ones with known keys and fractions, on the device and by the reference.
@@ -174,8 +174,10 @@ async fn far_away(cases: &mut Cases<'_>, pass: &KeyframeCursorPass) -> Result<()
 async fn beyond(
     cases: &mut Cases<'_>,
     pass: &KeyframeCursorPass,
-    (name, set): (&str, &ClipSet),
-    (instances, elapsed): (&[Instance], f32),
+    name: &str,
+    set: &ClipSet,
+    instances: &[Instance],
+    elapsed: f32,
     known: &[f32],
 ) -> Result<(), Error> {
     let gpu = cases.gpu;
