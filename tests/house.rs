@@ -372,6 +372,32 @@ fn references_that_use_a_pass(sources: &[Source]) -> Vec<String> {
     found
 }
 
+/// The parameters that are tuples taken apart. Closures may have some.
+fn tuple_parameters(sources: &[Source]) -> Vec<String> {
+    let takes_apart = |line: &&str| {
+        let is_other = line.contains('|') || line.trim_start().starts_with("let ");
+        !is_other && line.contains("): (")
+    };
+    let of = |source: &Source| {
+        let lines = source.text.lines().filter(takes_apart);
+        lines.map(|line| format!("{}: {}", source.path, line.trim())).collect::<Vec<_>>()
+    };
+    sources.iter().flat_map(of).collect()
+}
+
+#[test]
+fn no_function_takes_a_tuple_apart() {
+    assert_eq!(tuple_parameters(&sources()), Vec::<String>::new());
+}
+
+#[test]
+fn planted_tuple_parameters_are_found() {
+    let planted = "fn one((a, b): (u32, bool)) {}\nfn two(\n    (a, b): (u32, bool),\n) {\n    \
+                   let (a, b): (u32, bool) = c;\n    c.map(|(a, b): (u32, bool)| a);\n}\n";
+    let expected = ["a.rs: fn one((a, b): (u32, bool)) {}", "a.rs: (a, b): (u32, bool),"];
+    assert_eq!(tuple_parameters(&[Source::new("a.rs", planted)]), expected);
+}
+
 #[test]
 fn no_reference_uses_a_pass() {
     assert_eq!(references_that_use_a_pass(&sources()), Vec::<String>::new());

@@ -11,6 +11,29 @@ pub struct Kernel {
     pub(crate) layouts: Layouts,
 }
 
+/// Declares a pass with a single pipeline. `bindings` must name the generated module of its kernel.
+macro_rules! pass {
+    ($(#[$documentation:meta])* pub struct $name:ident;) => {
+        $(#[$documentation])*
+        #[derive(Debug, Clone)]
+        pub struct $name {
+            kernel: $crate::gpu::Kernel,
+        }
+
+        impl $name {
+            /// Compiles the pipeline.
+            ///
+            /// # Errors
+            /// [`GpuError`](crate::gpu::GpuError) if the driver cannot compile the kernel.
+            pub fn new(gpu: &$crate::gpu::Gpu) -> Result<Self, $crate::gpu::GpuError> {
+                Ok(Self { kernel: bindings::kernel(gpu)? })
+            }
+        }
+    };
+}
+
+pub(crate) use pass;
+
 /// A bind group of a kernel.
 pub type Group = wgpu::BindGroup;
 

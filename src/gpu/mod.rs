@@ -40,7 +40,7 @@ pub use adapter::{AdapterSummary, Options};
 pub use buffer::{Buffer, Uniform};
 pub use job::{Job, ParamsJob, Step, compute_pass};
 pub use kernel::{Group, Kernel};
-pub(crate) use kernel::{Layouts, rows_of_workgroups};
+pub(crate) use kernel::{Layouts, pass, rows_of_workgroups};
 pub use memory::Memory;
 pub(crate) use pending::PendingUploads;
 pub use readback_ring::ReadbackRing;

@@ -337,7 +337,7 @@ impl Renderer {
         pass.set_bind_group(1, group);
         pass.set_index_buffer(object.drawable.indices().slice(..));
         for (index, part, lists) in listed {
-            self.draw_part(pass, view, object, (index, part), &lists);
+            self.draw_part(pass, view, object, index, part, &lists);
         }
     }
 
@@ -352,7 +352,7 @@ impl Renderer {
         for SortedPart { drawable, part, draw, is_mirrored, transition } in &sorted.parts {
             let is_flipped = *is_mirrored != view.mirrors;
             let fade = sorted_fade(*transition);
-            let pipeline = self.pipeline(Layer::Transparent, part.specialization, (is_flipped, fade), view);
+            let pipeline = self.pipeline(Layer::Transparent, part.specialization, is_flipped, fade, view);
             let (Some(pipeline), Some(group)) = (pipeline, drawable.group()) else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, group);
@@ -373,7 +373,8 @@ impl Renderer {
         &self,
         layer: Layer,
         part: &Specialization,
-        (is_flipped, fade): (bool, Fade),
+        is_flipped: bool,
+        fade: Fade,
         view: &DrawnView<'_>,
     ) -> Option<&wgpu::RenderPipeline> {
         self.pipelines.get(&self.key(layer, part, is_flipped, view.is_shadowed).fading(fade))
@@ -385,18 +386,19 @@ impl Renderer {
         pass: &mut impl ScenePass<'a>,
         view: &DrawnView<'a>,
         object: &DrawnObject<'a>,
-        (index, part): (u32, Part<'a>),
+        index: u32,
+        part: Part<'a>,
         lists: &[ListDraw],
     ) {
         pass.set_bind_group(2, part.group);
         for list in lists {
             for is_mirrored in [false, true] {
                 let is_flipped = is_mirrored != view.mirrors;
-                let pipeline = self.pipeline(list.layer, part.specialization, (is_flipped, list.fade), view);
+                let pipeline = self.pipeline(list.layer, part.specialization, is_flipped, list.fade, view);
                 let is_listed = object.sides[usize::from(is_mirrored)];
                 let Some(pipeline) = pipeline.filter(|_| is_listed) else { continue };
                 pass.set_pipeline(pipeline);
-                draw_lists(pass, view, object, index, (is_mirrored, list.is_fading));
+                draw_lists(pass, view, object, index, is_mirrored, list.is_fading);
             }
         }
     }
@@ -441,7 +443,8 @@ fn draw_lists<'a>(
     view: &DrawnView<'a>,
     object: &DrawnObject<'a>,
     part: u32,
-    (is_mirrored, is_fading): (bool, bool),
+    is_mirrored: bool,
+    is_fading: bool,
 ) {
     let lod = object.lod;
     let first = if is_fading { lod.levels } else { 0 };

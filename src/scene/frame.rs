@@ -273,7 +273,7 @@ impl Scene {
             counts.record(encoder, self.frames, &self.objects);
         }
         if let (Some(watch), Some(layout)) = (&mut self.watch, &self.layout) {
-            watch.record(encoder, (self.frames, self.now), &self.objects, layout);
+            watch.record(encoder, self.frames, self.now, &self.objects, layout);
         }
         for view in views {
             view.count(encoder, self.frames, &self.objects);
@@ -379,7 +379,7 @@ impl Scene {
         let limit = |view: &&mut View| Some((view.triangle_limit()? >> others).max(1));
         let limits: Vec<Option<u32>> = views.iter().map(limit).collect();
         for object in self.objects.iter_mut() {
-            if object.provide(&self.gpu, &self.layouts_of_groups, (&seen, &limits), self.now)? {
+            if object.provide(&self.gpu, &self.layouts_of_groups, &seen, &limits, self.now)? {
                 self.layout = None;
             }
         }
@@ -390,21 +390,20 @@ impl Scene {
     fn fit(&mut self, views: &mut [&mut View]) -> Result<(), Error> {
         if self.layout.is_none() {
             self.layouts += 1;
-            let layout = object::laid_out(&self.gpu, &mut self.objects, (self.layouts, self.keeps_last))?;
+            let layout = object::laid_out(&self.gpu, &mut self.objects, self.layouts, self.keeps_last)?;
             self.objects.iter_mut().for_each(|object| object.instances.change_all());
             self.layout = Some(layout);
         }
         let Some(layout) = &self.layout else { return Ok(()) };
         for object in self.objects.iter_mut() {
-            object.fit(&self.gpu, layout, (&self.passes.assign, self.budget), &mut self.staged)?;
+            object.fit(&self.gpu, layout, &self.passes.assign, self.budget, &mut self.staged)?;
         }
-        self.attachments.fit(&self.gpu, &self.objects, layout, (&mut self.staged, self.frames))?;
+        self.attachments.fit(&self.gpu, &self.objects, layout, &mut self.staged, self.frames)?;
         for view in views {
             let Passes { select, decide, budget, list, sorted, .. } = &self.passes;
             let passes = ViewPasses { select, decide, budget, list, sorted };
-            view.fit(&self.gpu, layout, passes, (&self.layouts_of_groups, &self.objects))?;
-            let attachments = (&self.attachments, &self.objects);
-            view.fit_attached(&self.gpu, &self.passes.attach, attachments, layout)?;
+            view.fit(&self.gpu, layout, passes, &self.layouts_of_groups, &self.objects)?;
+            view.fit_attached(&self.gpu, &self.passes.attach, &self.attachments, &self.objects, layout)?;
             view.fit_counts(&self.gpu, self.counted.then_some(&layout.counted))?;
         }
         if self.counted && self.counts.as_ref().is_none_or(|counts| counts.version != layout.version) {
@@ -423,7 +422,7 @@ impl Scene {
         for (at, view) in views.iter_mut().enumerate() {
             let sides = self.objects.iter().map(|object| object.instances.sides());
             let now = Moment { frame: self.frames, time: self.now, number: at };
-            view.stage(&mut self.staged, (layout, &self.light), sides, now)?;
+            view.stage(&mut self.staged, layout, &self.light, sides, now)?;
         }
         let ticks = |seconds: f64| (seconds * TICKS).round() as i64 as u32;
         let last = std::mem::replace(&mut self.last_staged, self.now).min(self.now);
@@ -431,7 +430,7 @@ impl Scene {
         let frame =
             Frame { ticks: ticks(self.now), frame_ticks, frame: self.frames as u32, ahead: self.step };
         for object in self.objects.iter_mut() {
-            object.stage((&mut self.staged, layout), (&frame, self.now))?;
+            object.stage(&mut self.staged, layout, &frame, self.now)?;
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use crate::InputError;
 use crate::asset::Transform;
 use crate::scene::Scene;
-use crate::scene::character::Character;
+use crate::scene::character::{Character, Weight};
 use crate::scene::handles::{InstanceId, no_character};
 use crate::scene::placement::Play;
 
@@ -39,9 +39,9 @@ impl Scene {
         play: &Play<'_>,
         weight: f32,
     ) -> Result<(), InputError> {
-        let now = self.now;
+        let fade = Weight { to: weight, start: self.now, ..Weight::default() };
         let character = self.character_mut(instance)?;
-        character.fade(instance.index, layer, (weight, 0.0, false), now)?;
+        character.fade(instance.index, layer, fade)?;
         character.play_on(instance.index, layer, play)?;
         self.bound_again(instance)
     }
@@ -73,8 +73,8 @@ impl Scene {
         weight: f32,
         seconds: f32,
     ) -> Result<(), InputError> {
-        let now = self.now;
-        self.character_mut(instance)?.fade(instance.index, layer, (weight, seconds, false), now)?;
+        let fade = Weight { to: weight, start: self.now, seconds, ..Weight::default() };
+        self.character_mut(instance)?.fade(instance.index, layer, fade)?;
         self.bound_again(instance)
     }
 
@@ -104,11 +104,11 @@ impl Scene {
         play: &Play<'_>,
         seconds: f32,
     ) -> Result<(), InputError> {
-        let now = self.now;
+        let off = Weight { start: self.now, hands_over: true, ..Weight::default() };
         let character = self.character_mut(instance)?;
-        character.fade(instance.index, layer, (0.0, 0.0, true), now)?;
+        character.fade(instance.index, layer, off)?;
         character.play_on(instance.index, layer, play)?;
-        character.fade(instance.index, layer, (1.0, seconds, true), now)?;
+        character.fade(instance.index, layer, Weight { to: 1.0, seconds, ..off })?;
         self.bound_again(instance)
     }
 

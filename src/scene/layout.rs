@@ -54,19 +54,30 @@ pub(crate) struct Layout {
     pub counted: Arc<Counted>,
 }
 
+/// Objects that are laid out one after the other.
+#[derive(Debug)]
+pub(super) struct LaidOut<'a> {
+    pub objects: &'a [LodObject],
+    pub draws: Vec<SceneDraw>,
+    pub sorted: &'a [SortedDraw],
+    /// The total numbers of instances, list words and draws.
+    pub end: ObjectRange,
+    pub counted: Counted,
+    pub triangle_unit: u32,
+}
+
 impl Layout {
-    /// Allocates the buffers for objects that are laid out one after the other. `end` holds the total numbers of
-    /// instances, list words and draws.
+    /// Allocates the buffers.
     ///
     /// # Errors
     /// [`crate::gpu::GpuError`].
     pub(super) fn new(
         gpu: &Gpu,
-        (objects, draws, sorted): (&[LodObject], Vec<SceneDraw>, &[SortedDraw]),
-        end: ObjectRange,
-        (version, keeps_last, counted): (u64, bool, Arc<Counted>),
-        triangle_unit: u32,
+        laid_out: LaidOut<'_>,
+        version: u64,
+        keeps_last: bool,
     ) -> Result<Self, Error> {
+        let LaidOut { objects, draws, sorted, end, counted, triangle_unit } = laid_out;
         let of_object =
             |(at, object): (u32, &LodObject)| std::iter::repeat_n(at, (object.instances / BLOCK) as usize);
         let block_objects: Vec<u32> = (0..).zip(objects).flat_map(of_object).collect();
@@ -91,7 +102,7 @@ impl Layout {
             triangle_unit,
             draws,
             sorted: Buffer::from_slice(gpu, "single instances", sorted)?,
-            counted,
+            counted: Arc::new(counted),
         })
     }
 }

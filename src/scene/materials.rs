@@ -70,7 +70,7 @@ impl Scene {
                 return Err(InputError::new("material.alpha", format!("{:?}", new.alpha), bound).into());
             }
             let old = std::mem::replace(&mut looks.materials[index], new.clone());
-            let set = entry.change_materials((&gpu, &layouts), &mut staged, &Change::Material(index, &old));
+            let set = entry.change_materials(&gpu, &layouts, &mut staged, &Change::Material(index, &old));
             if let (Err(_), Some(looks)) = (&set, &mut entry.looks) {
                 looks.materials[index] = old;
             }
@@ -106,7 +106,7 @@ impl Scene {
         let mut staged = std::mem::take(&mut self.staged);
         let set = self.object_mut(object).map_err(Error::from).and_then(|entry| {
             let old = looks(entry)?.set_image(&gpu, index, image)?;
-            let set = entry.change_materials((&gpu, &layouts), &mut staged, &Change::Image(index));
+            let set = entry.change_materials(&gpu, &layouts, &mut staged, &Change::Image(index));
             if let (Err(_), Some(looks)) = (&set, &mut entry.looks) {
                 match old {
                     Some(old) => looks.images[index] = old,
@@ -143,17 +143,18 @@ impl Change<'_> {
     /// The new materials of a part; `None` if the part does not change.
     fn of(
         &self,
-        gpu: (&Gpu, &SceneLayouts),
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
         looks: &Looks,
         part: &PartMaterials,
     ) -> Result<Option<Changed>, Error> {
         Ok(match self {
             Self::Material(index, old) if part.has(*index) => {
-                let samplings = part.samplings_with(looks, (*index, old))?;
-                Some(part.changed(gpu, looks, samplings, false)?)
+                let samplings = part.samplings_with(looks, *index, old)?;
+                Some(part.changed(gpu, layouts, looks, samplings, false)?)
             }
             Self::Image(index) if part.shows(*index) => {
-                Some(part.changed(gpu, looks, part.samplings(), true)?)
+                Some(part.changed(gpu, layouts, looks, part.samplings(), true)?)
             }
             _ => None,
         })
@@ -164,7 +165,8 @@ impl Object {
     /// Changes the materials of all parts. If one part fails, no part changes.
     fn change_materials(
         &mut self,
-        gpu: (&Gpu, &SceneLayouts),
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
         staged: &mut Staged,
         change: &Change<'_>,
     ) -> Result<(), Error> {
@@ -174,7 +176,7 @@ impl Object {
             let Some(mesh) = drawable.downcast::<MeshDrawable>() else { continue };
             for (number, part) in mesh.parts.iter().enumerate() {
                 let MeshMaterials::Plain(materials) = part.materials() else { continue };
-                if let Some(changed) = change.of(gpu, looks, materials)? {
+                if let Some(changed) = change.of(gpu, layouts, looks, materials)? {
                     changes.push((at, number, changed));
                 }
             }

@@ -491,6 +491,6 @@ impl Scene {
     /// # }
     /// ```
     pub fn view(&self, quality: Quality) -> Result<View, Error> {
-        View::new(&self.gpu, (self.objects.scene(), self.device), quality)
+        View::new(&self.gpu, self.objects.scene(), self.device, quality)
     }
 }

@@ -177,8 +177,8 @@ impl Scene {
             return self.mesh(model, capacity);
         }
         let (gpu, pending) = self.uploader();
-        let (layouts, settings) = (&self.layouts_of_groups, (self.budget, self.keeps_last));
-        let object = Object::of_character(&gpu, layouts, (model, options), capacity, settings)?;
+        let (layouts, budget) = (&self.layouts_of_groups, self.budget);
+        let object = Object::of_character(&gpu, layouts, model, options, capacity, budget, self.keeps_last)?;
         Ok(object.awaiting(pending))
     }
 

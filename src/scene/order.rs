@@ -43,7 +43,8 @@ pub(crate) struct Ordered {
 pub(super) fn back_to_front<'a>(
     order: &mut Vec<Ordered>,
     objects: impl Iterator<Item = &'a Object>,
-    (view, camera): (&SelectView, &Camera),
+    view: &SelectView,
+    camera: &Camera,
 ) {
     order.clear();
     let (eye, ahead) = (camera.eye_offset().as_dvec3(), camera.ahead().as_dvec3());

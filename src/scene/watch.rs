@@ -163,7 +163,8 @@ impl Watch {
     pub(super) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        (frame, time): (u64, f64),
+        frame: u64,
+        time: f64,
         objects: &Slots<Object>,
         layout: &Layout,
     ) {

@@ -60,8 +60,10 @@ struct Paging {
 impl Paging {
     fn new(
         gpu: &Gpu,
-        (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
-        (select, active): (ClusterSelectBuffers, &ActiveClusters),
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
+        select: ClusterSelectBuffers,
+        active: &ActiveClusters,
         pages: u32,
     ) -> Result<Self, Error> {
         let allocated = if active.keeps_last { PageBuffers::keeping } else { PageBuffers::new };
@@ -103,7 +105,7 @@ impl PagedSkin {
         let listed = if keeps_last { ActiveClusters::keeping } else { ActiveClusters::new };
         let active = listed(gpu, &mesh, &crowd)?;
         let palette = PalettePass::new(gpu)?.prepare(gpu, &mesh, matrices, &crowd)?;
-        let paging = Paging::new(gpu, (&mesh, &crowd), (select, &active), pages)?;
+        let paging = Paging::new(gpu, &mesh, &crowd, select, &active, pages)?;
         Ok(Self { mesh, clusters, crowd, active, palette, paging, reader: Arc::new(updated.reader()) })
     }
 
@@ -121,7 +123,7 @@ impl PagedSkin {
         // Starts a new record of skinned instances. Frames that are already recorded keep using the old record.
         let skinned = ClusterSelectBuffers::new(gpu, &self.mesh, &self.crowd)?.skinned;
         let select = ClusterSelectBuffers { skinned, ..self.paging.select.clone() };
-        self.paging = Paging::new(gpu, (&self.mesh, &self.crowd), (select, &self.active), pages)?;
+        self.paging = Paging::new(gpu, &self.mesh, &self.crowd, select, &self.active, pages)?;
         Ok(())
     }
 

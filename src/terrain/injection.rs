@@ -59,8 +59,8 @@ impl FeatureOffsets {
         let own = Self { lattices, mode: features.mode };
         let with_offsets = |lattice: usize| {
             let points: Vec<_> = own.lattices[lattice].iter().collect();
-            let offset = |(at, injected): &(&_, &Injected)| {
-                let offset = own.offset(config, lattice as u32, **at, injected.height);
+            let offset = |(at, injected): &(&(i64, i64), &Injected)| {
+                let offset = own.offset(config, lattice as u32, at.0, at.1, injected.height);
                 (**at, Injected { offset, ..**injected })
             };
             points.par_iter().map(offset).collect()
@@ -68,7 +68,7 @@ impl FeatureOffsets {
         Self { lattices: (0..own.lattices.len()).map(with_offsets).collect(), mode: features.mode }
     }
 
-    fn offset(&self, config: &TerrainConfig, coarser: u32, (row, column): (i64, i64), height: i32) -> u32 {
+    fn offset(&self, config: &TerrainConfig, coarser: u32, row: i64, column: i64, height: i32) -> u32 {
         if self.mode == FeatureMode::Additive || coarser == config.levels() {
             return height.unsigned_abs();
         }
@@ -139,7 +139,9 @@ impl FeatureOffsets {
     pub fn influence(&self, region: Region) -> i64 {
         let lattices = (0..).zip(&self.lattices).skip(region.coarser as usize);
         let points = lattices.flat_map(|(lattice, points)| {
-            points.iter().map(move |(at, injected)| ChangedPoint::on_lattice(lattice, *at, injected.offset))
+            points.iter().map(move |((row, column), injected)| {
+                ChangedPoint::on_lattice(lattice, *row, *column, injected.offset)
+            })
         });
         ChangedPoint::bound(&points.collect::<Vec<_>>(), region)
     }
@@ -157,7 +159,7 @@ impl FeatureOffsets {
             };
             let places = one.keys().chain(two.keys().filter(|at| !one.contains_key(at)));
             let changed_at =
-                |at: &(i64, i64)| ChangedPoint::on_lattice(lattice, *at, offset(at).unwrap_or(0));
+                |at: &(i64, i64)| ChangedPoint::on_lattice(lattice, at.0, at.1, offset(at).unwrap_or(0));
             changed.extend(places.filter(|at| differs(at)).map(changed_at));
         }
         changed
@@ -179,7 +181,7 @@ pub(crate) struct ChangedPoint {
 
 impl ChangedPoint {
     /// A point by the coarsest lattice that has it, and its row and column.
-    fn on_lattice(lattice: u32, (row, column): (i64, i64), offset: u32) -> Self {
+    fn on_lattice(lattice: u32, row: i64, column: i64, offset: u32) -> Self {
         Self { at: [column, row], coarsest: lattice, reach: REACH << lattice, offset }
     }
 

@@ -9,7 +9,7 @@ use crate::terrain::window::{Lattice, Span};
 pub(crate) fn base_lattice(config: &TerrainConfig, features: &Features, spans: [Span; 2]) -> Vec<i32> {
     let draw = Draw::new(config);
     let spacing = config.sample_spacing() << config.levels();
-    let injected = Injected::new(features, spans, spacing, (1, false));
+    let injected = Injected::new(features, spans, spacing, 1, false);
     let width = spans[0].width();
     let mut grid = vec![0; width * spans[1].width()];
     for (y, heights) in (spans[1].first..).zip(grid.chunks_exact_mut(width)) {
@@ -73,12 +73,7 @@ pub(crate) struct Injected {
 impl Injected {
     /// Finds the features on a window's lattice, which is first extended by `rim` points on every side. The extension is needed
     /// because features outside the window also influence points inside. `new_only` excludes points of the coarser lattice.
-    pub(crate) fn new(
-        features: &Features,
-        spans: [Span; 2],
-        spacing: i64,
-        (rim, new_only): (u32, bool),
-    ) -> Self {
+    pub(crate) fn new(features: &Features, spans: [Span; 2], spacing: i64, rim: u32, new_only: bool) -> Self {
         let origin = spans.map(|span| span.first - i64::from(rim));
         let width = spans[0].width().max(spans[1].width()) as u32 + 2 * rim;
         let lattice = Lattice { origin: origin.map(|index| index * spacing), width, spacing };

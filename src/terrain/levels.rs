@@ -353,7 +353,7 @@ impl LevelJob {
             to.elements(buffer, 0, origins)?;
         }
         self.features.write(to, regions.len() as u32, |level, window| {
-            self.features_of(features, (level, origins[level][window as usize]), worlds[window as usize])
+            self.features_of(features, level, origins[level][window as usize], worlds[window as usize])
         })?;
         Ok(())
     }
@@ -373,7 +373,8 @@ impl LevelJob {
     fn features_of(
         &self,
         features: &Features,
-        (level, origin): (usize, [i32; 2]),
+        level: usize,
+        origin: [i32; 2],
         world: [i32; 2],
     ) -> Vec<(u32, u32, i32)> {
         let finer = self.origins.len() - 1 - level + self.coarser as usize;
@@ -388,7 +389,7 @@ impl LevelJob {
     pub fn feature_count(&self, regions: &[Region], features: &Features) -> usize {
         let levels = self.origins_of(regions).into_iter().enumerate();
         let all = levels.flat_map(|(level, origins)| origins.into_iter().map(move |origin| (level, origin)));
-        all.map(|at| self.features_of(features, at, [0, 0]).len()).sum()
+        all.map(|(level, origin)| self.features_of(features, level, origin, [0, 0]).len()).sum()
     }
 
     /// Records the generation of all regions of the batch.

@@ -134,6 +134,15 @@ fn damaged_meshopt_is_refused_by_name() {
     refused("byteLength", json!(7), &path, "[7 bytes]");
     refused("byteLength", json!(1 << 30), &format!("{path}.byteLength"), "must lie in buffers[0]");
     refused("count", json!(1_u64 << 40), &format!("{path}.count"), "must be at most");
+    // Elements without bytes take nothing from the budget, however many they are.
+    for mode in ["ATTRIBUTES", "TRIANGLES", "INDICES"] {
+        let mut changed = whole.clone();
+        let extension = &mut changed.0["bufferViews"][view]["extensions"][MESHOPT];
+        (extension["mode"], extension["byteStride"], extension["count"]) =
+            (json!(mode), json!(0), json!(3_u64 << 40));
+        let error = read(&changed).expect_err(mode);
+        assert!(error.path == path && error.to_string().contains("of 0 bytes"), "{error}");
+    }
 }
 
 /// Damage anywhere gives a model or an error.

@@ -56,14 +56,14 @@ fn every_method_is_measured_at_every_angle() {
 fn a_view_of_nothing_is_refused() {
     let steps = Cell::new(0);
     let count = |_: &str| steps.set(steps.get() + 1);
-    let drawn = square([24, 20]).draw(ReliefMethod::Quadtree, None, ([0.0; 3], 2), &count).expect("drawn");
+    let drawn = square([24, 20]).draw(ReliefMethod::Quadtree, None, [0.0; 3], 2, &count).expect("drawn");
     assert_eq!((drawn.picture.dimensions(), drawn.rays.len(), drawn.hits.len()), ((24, 20), 480, 480));
     assert_eq!(steps.get(), 4);
     let mut flat = square([1, 1]);
     (flat.view.angle, flat.view.azimuth) = (89.99, 45.0);
     // The ray through the center of the only pixel meets the middle of the square at every angle.
-    assert!(flat.draw(ReliefMethod::Plain, None, ([0.0; 3], 1), &count).is_ok());
+    assert!(flat.draw(ReliefMethod::Plain, None, [0.0; 3], 1, &count).is_ok());
     flat.view.size = [2, 2];
-    let refused = flat.draw(ReliefMethod::Plain, None, ([0.0; 3], 1), &count).expect_err("nothing is seen");
+    let refused = flat.draw(ReliefMethod::Plain, None, [0.0; 3], 1, &count).expect_err("nothing is seen");
     assert!(refused.to_string().starts_with("angle = 89.99"), "{refused}");
 }

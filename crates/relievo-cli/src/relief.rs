@@ -283,7 +283,7 @@ fn steps(text: &str) -> Result<[u32; 2], InputError> {
 impl Relief {
     fn drawn(&self, square: &ReliefSquare, gpu: Option<&Gpu>) -> Result<Drawn, Error> {
         let progress = bar(4, "building maps");
-        let drawn = square.draw(self.method, gpu, (BACKGROUND, FINER), &|next| {
+        let drawn = square.draw(self.method, gpu, BACKGROUND, FINER, &|next| {
             progress.inc(1);
             progress.set_message(next);
         })?;

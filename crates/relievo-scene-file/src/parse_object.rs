@@ -45,7 +45,7 @@ pub(super) fn mesh(at: &At<'_>) -> Result<ObjectEntry, InputError> {
         return Err(levels.error("must not be given beside material: a relief has one level of detail"));
     }
     let kind = fields.maybe("material", |at| relief(&at))?.map_or(EntryKind::Mesh, EntryKind::Relief);
-    placed(at, &fields, (source, kind), MAX_MESHES)
+    placed(at, &fields, source, kind, MAX_MESHES)
 }
 
 /// An entry of `characters`.
@@ -68,13 +68,14 @@ pub(super) fn character(at: &At<'_>) -> Result<ObjectEntry, InputError> {
     let all = PlayEntry { clip: None, rate: 1.0, start: 0.0, wrap: Wrap::Loop };
     let kind = EntryKind::Character(play(&fields, &all)?);
     let detail = parse_character::detail(&fields)?;
-    Ok(ObjectEntry { detail, ..placed(at, &fields, (source, kind), MAX_CHARACTERS)? })
+    Ok(ObjectEntry { detail, ..placed(at, &fields, source, kind, MAX_CHARACTERS)? })
 }
 
 fn placed(
     at: &At<'_>,
     fields: &Fields<'_>,
-    (source, kind): (ModelSource, EntryKind),
+    source: ModelSource,
+    kind: EntryKind,
     most: usize,
 ) -> Result<ObjectEntry, InputError> {
     let play = match &kind {

@@ -78,8 +78,8 @@ pub fn visit_heard(
     let port = server.server_addr().to_ip().map_or(0, |address| address.port());
     let log = folder.path().join("stderr");
     let address = format!("http://localhost:{port}/");
-    let mut browser = Browser::start((program, flags), folder.path(), &log, &address)?;
-    let result = result_of(&server, &mut browser, files, (patience, heard));
+    let mut browser = Browser::start(program, flags, folder.path(), &log, &address)?;
+    let result = result_of(&server, &mut browser, files, patience, heard);
     drop(browser);
     result.map_err(|why| {
         let said = std::fs::read(&log).unwrap_or_default();
@@ -91,7 +91,8 @@ fn result_of(
     server: &Server,
     browser: &mut Browser,
     files: &[(&str, &[u8])],
-    (patience, heard): (Duration, &mut dyn FnMut(&str)),
+    patience: Duration,
+    heard: &mut dyn FnMut(&str),
 ) -> Result<Value, String> {
     let start = Instant::now();
     let mut note = "nothing".to_owned();
@@ -154,7 +155,8 @@ struct Browser(Child);
 
 impl Browser {
     fn start(
-        (program, flags): (&Path, &[&str]),
+        program: &Path,
+        flags: &[&str],
         profile: &Path,
         log: &Path,
         address: &str,

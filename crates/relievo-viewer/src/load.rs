@@ -212,7 +212,7 @@ impl Loader<'_> {
         let file = renamed.file().map_err(in_file)?;
         if let (Some(url), Some(fetching), true) = (source.url(&name), fetching, Streaming::suits(&file)) {
             let streaming = Streaming::new(file, &url, fetching);
-            return self.streamed(document, streaming, (source, is_framed)).await;
+            return self.streamed(document, streaming, source, is_framed).await;
         }
         self.fetch_all(&file, &throttled).await.map_err(in_file)?;
         let loaded = self
@@ -225,7 +225,7 @@ impl Loader<'_> {
             Error::Input(source) => in_file(source),
             other => other,
         })?;
-        self.ready(document, world, known, (source, is_framed)).await
+        self.ready(document, world, known, source, is_framed).await
     }
 
     /// Tells that the server does not answer. Returns whether somebody listens.
@@ -238,7 +238,8 @@ impl Loader<'_> {
         &self,
         document: Document,
         mut streaming: Streaming,
-        from: (Arc<dyn Source>, bool),
+        source: Arc<dyn Source>,
+        is_framed: bool,
     ) -> Result<Ready, Error> {
         self.teller.step("waiting for what the scene needs").await;
         let loaded = streaming.begin(&self.gpu, |why| _ = self.waits(why)).await?;
@@ -251,7 +252,7 @@ impl Loader<'_> {
             self.teller.tell(News::Arrived(arrival));
         }
         // Its models are not known: they become finer.
-        let mut ready = self.ready(document, world, HashMap::new(), from).await?;
+        let mut ready = self.ready(document, world, HashMap::new(), source, is_framed).await?;
         ready.known.models.clear();
         Ok(Ready { streaming: Some(streaming), ..ready })
     }
@@ -262,7 +263,8 @@ impl Loader<'_> {
         mut document: Document,
         mut world: World,
         mut models: HashMap<String, Arc<Model>>,
-        (source, is_framed): (Arc<dyn Source>, bool),
+        source: Arc<dyn Source>,
+        is_framed: bool,
     ) -> Result<Ready, Error> {
         for object in &mut world.objects {
             for name in [&mut object.name, &mut object.source] {
@@ -304,7 +306,7 @@ impl Loader<'_> {
             return Ok((Document::of_model(name, &model), false));
         }
         let called = name.display().to_string();
-        self.fetch((name, called), source).await.map_err(|error| Error::file(name, error))?;
+        self.fetch(name, called, source).await.map_err(|error| Error::file(name, error))?;
         let bytes = self.files.borrow()[name].clone();
         let text = || {
             str::from_utf8(&bytes)
@@ -331,13 +333,13 @@ impl Loader<'_> {
             let called = file.package_name(&name).map_or_else(|| name.display().to_string(), str::to_owned);
             self.teller.step(format!("reading {called}")).await;
             // One that is missing is told by the scene, with the path in it.
-            let _ = self.fetch((&name, called), source).await;
+            let _ = self.fetch(&name, called, source).await;
         }
         Ok(())
     }
 
     /// Reads a file, if it was not read before. The panel lists it as `called`.
-    async fn fetch(&self, (name, called): (&Path, String), source: &Throttled<'_>) -> io::Result<()> {
+    async fn fetch(&self, name: &Path, called: String, source: &Throttled<'_>) -> io::Result<()> {
         if self.files.borrow().contains_key(name) {
             return Ok(());
         }
@@ -391,7 +393,7 @@ impl Loader<'_> {
             for name in lacking {
                 self.teller.step(format!("reading {}", name.display())).await;
                 let called = name.display().to_string();
-                if let Err(error) = self.fetch((&name, called), source).await {
+                if let Err(error) = self.fetch(&name, called, source).await {
                     refused.insert(name, (error.kind(), error.to_string()));
                 }
             }

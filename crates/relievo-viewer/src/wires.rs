@@ -53,7 +53,7 @@ pub fn paint_wires(
                     return wires;
                 }
                 wires.triangles += indices.len() / 3;
-                paint_mesh(painter, on, &posed(mesh, model, &bones), (indices, mesh.double_sided));
+                paint_mesh(painter, on, &posed(mesh, model, &bones), indices, mesh.double_sided);
             }
         }
     }
@@ -144,7 +144,8 @@ fn paint_mesh(
     painter: &egui::Painter,
     on: Projected<'_>,
     vertices: &[DVec3],
-    (indices, is_double_sided): (&[u32], bool),
+    indices: &[u32],
+    is_double_sided: bool,
 ) {
     let places: Vec<Option<Pos2>> = vertices.iter().map(|vertex| on.at(*vertex)).collect();
     let eye = on.camera.world();

@@ -4,33 +4,24 @@ use super::{MotionBounds, check_bone_radii};
 use crate::animation::crowd::Crowd;
 use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::animation::bounds as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
+use crate::gpu::{Buffer, Gpu, Job, Uniform, pass};
 use crate::shared::animation::bounds::{BoundsParams, THREADS};
 use crate::{Error, InputError};
 
 impl SeenAs<[f32; 4]> for MotionBounds {}
 
-/// Computes the bounding box of each animated instance on the GPU.
-#[derive(Debug, Clone)]
-pub struct BoundsPass {
-    kernel: Kernel,
+pass! {
+    /// Computes the bounding box of each animated instance on the GPU.
+    pub struct BoundsPass;
 }
 
 impl BoundsPass {
-    /// Compiles the compute pipeline of this pass.
-    ///
-    /// # Errors
-    /// [`GpuError`] for shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job that computes the bounds of a crowd's instances from their model matrices. `bone_radii` has one radius per
     /// bone, in metres.
     ///
     /// # Errors
     /// [`InputError`] for invalid radii, for a number of radii other than the number of bones, for 2²⁶ instances or more, and if
-    /// `bounds` is too small for one box per instance; [`GpuError`] for errors of the device.
+    /// `bounds` is too small for one box per instance; [`crate::gpu::GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -4,29 +4,20 @@ use crate::animation::crowd::{ClipBuffers, Crowd};
 use crate::animation::gate_state::GateState;
 use crate::animation::instance::{check_elapsed, check_seconds};
 use crate::gpu::bindings::animation::clip_clock as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, ParamsJob, Uniform, Upload};
+use crate::gpu::{Gpu, Job, ParamsJob, Uniform, Upload, pass};
 use crate::shared::animation::clip_clock::ClipClockParams;
 use crate::{Error, InputError};
 
-/// Computes the clip clock of each instance on the GPU.
-#[derive(Debug, Clone)]
-pub struct ClipClockPass {
-    kernel: Kernel,
+pass! {
+    /// Computes the clip clock of each instance on the GPU.
+    pub struct ClipClockPass;
 }
 
 impl ClipClockPass {
-    /// Compiles the compute pipeline of this pass.
-    ///
-    /// # Errors
-    /// [`GpuError`] for shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job that computes the clip clocks of a crowd.
     ///
     /// # Errors
-    /// [`InputError`] if the number of clips differs from the crowd's; [`GpuError`] for errors of the device.
+    /// [`InputError`] if the number of clips differs from the crowd's; [`crate::gpu::GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -68,7 +59,7 @@ impl ClipClockJob {
     /// `elapsed` ([`Frame::ahead`](crate::animation::gate::Frame::ahead)).
     ///
     /// # Errors
-    /// [`InputError`] if a time is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`GpuError`] for errors
+    /// [`InputError`] if a time is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`crate::gpu::GpuError`] for errors
     /// of the device.
     pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
         self.set_through(&mut &*gpu, elapsed, ahead)

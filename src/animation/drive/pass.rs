@@ -5,30 +5,21 @@ use crate::animation::active::Active;
 use crate::animation::crowd::Crowd;
 use crate::animation::gate_state::GateState;
 use crate::gpu::bindings::animation::drive as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
+use crate::gpu::{Buffer, Gpu, Job, Uniform, pass};
 use crate::shared::animation::drive::DriveParams;
 use crate::{Error, InputError};
 
-/// Adds driven bones to the bones that a gate chose, on the GPU.
-#[derive(Debug, Clone)]
-pub struct DrivePass {
-    kernel: Kernel,
+pass! {
+    /// Adds driven bones to the bones that a gate chose, on the GPU.
+    pub struct DrivePass;
 }
 
 impl DrivePass {
-    /// Compiles the compute pipeline of this pass.
-    ///
-    /// # Errors
-    /// [`GpuError`] for shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job that adds driven bones to a crowd's bits. Record the job after the gate and before the compaction into
     /// lists ([`CompactPass`](crate::animation::compact::CompactPass)).
     ///
     /// # Errors
-    /// [`InputError`] if the index of a word is beyond the crowd's bits; [`GpuError`] for errors of the device.
+    /// [`InputError`] if the index of a word is beyond the crowd's bits; [`crate::gpu::GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -3,31 +3,22 @@
 use super::AssignParams;
 use crate::Error;
 use crate::gpu::bindings::lod::assign as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
+use crate::gpu::{Gpu, Job, Uniform, pass};
 
 /// The buffers that an assignment reads and writes.
 #[doc(inline)]
 pub use bindings::Buffers as AssignBuffers;
 
-/// GPU pass that divides allowed displacements between bone gates and skinning.
-#[derive(Debug, Clone)]
-pub struct AssignPass {
-    kernel: Kernel,
+pass! {
+    /// GPU pass that divides allowed displacements between bone gates and skinning.
+    pub struct AssignPass;
 }
 
 impl AssignPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Errors of the driver's shader compiler.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job for at most `instances` instances. [`AssignParams::instances`] is the number in use.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers that hold fewer instances; [`GpuError`] for failures of the device.
+    /// [`InputError`](crate::InputError) for buffers that hold fewer instances; [`crate::gpu::GpuError`] for failures of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

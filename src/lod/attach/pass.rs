@@ -3,33 +3,24 @@
 use super::AttachParams;
 use crate::Error;
 use crate::gpu::bindings::lod::attach as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Uniform};
+use crate::gpu::{Gpu, Job, Uniform, pass};
 
 /// Buffers of the kernel that places attached meshes.
 #[doc(inline)]
 pub use bindings::Buffers as AttachBuffers;
 
-/// GPU pass that computes the placements of meshes attached to bones.
-#[derive(Debug, Clone)]
-pub struct AttachPass {
-    kernel: Kernel,
+pass! {
+    /// GPU pass that computes the placements of meshes attached to bones.
+    pub struct AttachPass;
 }
 
 impl AttachPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Errors of the driver's shader compiler.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job that places the attached meshes of one view, one mesh for each element of `attachments`. Record the job
     /// after the view's selection, and after the character's model matrices are computed.
     ///
     /// # Errors
     /// [`InputError`](crate::InputError) for buffers with too few elements (`allowed`, placements, last instances, kept bones);
-    /// [`GpuError`] for failures of the device.
+    /// [`crate::gpu::GpuError`] for failures of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

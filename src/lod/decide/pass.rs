@@ -2,33 +2,24 @@
 
 use crate::Error;
 use crate::gpu::bindings::lod::decide as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel};
+use crate::gpu::{Gpu, Job, pass};
 use crate::lod::BLOCK;
 
 /// The buffers that a decision reads and writes.
 #[doc(inline)]
 pub use bindings::Buffers as DecideBuffers;
 
-/// GPU pass that decides the levels of detail of a view's instances.
-#[derive(Debug, Clone)]
-pub struct DecidePass {
-    kernel: Kernel,
+pass! {
+    /// GPU pass that decides the levels of detail of a view's instances.
+    pub struct DecidePass;
 }
 
 impl DecidePass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Errors of the driver's shader compiler.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job for all instances: [`BLOCK`] instances for each element of `block_objects`. Record the job after
     /// [`select`](crate::lod::select).
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`] for failures of the
+    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`crate::gpu::GpuError`] for failures of the
     /// device.
     pub fn prepare(&self, gpu: &Gpu, buffers: DecideBuffers<'_>) -> Result<Job, Error> {
         let blocks = buffers.block_objects.len();

@@ -2,32 +2,23 @@
 
 use crate::Error;
 use crate::gpu::bindings::lod::select as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel};
+use crate::gpu::{Gpu, Job, pass};
 use crate::lod::BLOCK;
 
 /// The buffers that a selection reads and writes.
 #[doc(inline)]
 pub use bindings::Buffers as SelectBuffers;
 
-/// GPU pass that selects the instances that a view sees.
-#[derive(Debug, Clone)]
-pub struct SelectPass {
-    kernel: Kernel,
+pass! {
+    /// GPU pass that selects the instances that a view sees.
+    pub struct SelectPass;
 }
 
 impl SelectPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Errors of the driver's shader compiler.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job for all instances: [`BLOCK`] instances for each element of `block_objects`.
     ///
     /// # Errors
-    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`GpuError`] for failures of the
+    /// [`InputError`](crate::InputError) for buffers that are too small for these blocks; [`crate::gpu::GpuError`] for failures of the
     /// device.
     pub fn prepare(&self, gpu: &Gpu, buffers: SelectBuffers<'_>) -> Result<Job, Error> {
         let blocks = buffers.block_objects.len();

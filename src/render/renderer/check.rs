@@ -65,7 +65,7 @@ impl Renderer {
         }
         for object in objects {
             let mut parts = object.drawable.parts().map(|part| part.specialization);
-            let is_compiled = |part, fade| self.pipeline(layer, part, (false, fade), view).is_some();
+            let is_compiled = |part, fade| self.pipeline(layer, part, false, fade, view).is_some();
             let is_ready = |part| {
                 self.fades_of(part, object.transition, layer).into_iter().all(|fade| is_compiled(part, fade))
             };

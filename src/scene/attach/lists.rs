@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Attached, Attachments};
+use super::{Attached, Attachments, ListKey};
 use crate::Error;
 use crate::animation::local_to_model::reference::affine;
 use crate::asset::transform::AFFINE_IDENTITY;
@@ -27,8 +27,8 @@ pub(in crate::scene) struct List {
 }
 
 impl Attachments {
-    /// All lists. Each key is the slot and generation of the character's object, and the index of the chunk in the object.
-    pub fn lists(&self) -> impl Iterator<Item = (([u32; 2], usize), &List)> {
+    /// All lists.
+    pub fn lists(&self) -> impl Iterator<Item = (ListKey, &List)> {
         self.lists.iter().map(|(key, list)| (*key, list))
     }
 
@@ -51,7 +51,8 @@ impl Attachments {
         gpu: &Gpu,
         objects: &Slots<Object>,
         layout: &Layout,
-        (staged, frame): (&mut Staged, u64),
+        staged: &mut Staged,
+        frame: u64,
     ) -> Result<(), Error> {
         let is_written = self.written == Some(layout.version) || self.lists.is_empty() && self.all.is_empty();
         if !is_written {
@@ -75,7 +76,7 @@ impl Attachments {
         layout: &Layout,
         staged: &mut Staged,
     ) -> Result<(), Error> {
-        let mut of_chunk: BTreeMap<([u32; 2], usize), Vec<Attachment>> =
+        let mut of_chunk: BTreeMap<ListKey, Vec<Attachment>> =
             self.lists.keys().map(|key| (*key, Vec::new())).collect();
         for (mesh, attached) in &self.all {
             if let Some((key, attachment)) = on_device(objects, *mesh, attached) {
@@ -92,7 +93,7 @@ impl Attachments {
             };
             attachments.sort_by_key(|attachment| attachment.key);
             let value = AttachParams { attached: 0, bones, first, first_last, frame: 0, last_frame: 0 };
-            self.write(gpu, (key, value), &attachments, staged)?;
+            self.write(gpu, key, value, &attachments, staged)?;
         }
         self.written = Some(layout.version);
         Ok(())
@@ -101,7 +102,8 @@ impl Attachments {
     fn write(
         &mut self,
         gpu: &Gpu,
-        (key, value): (([u32; 2], usize), AttachParams),
+        key: ListKey,
+        value: AttachParams,
         attachments: &[Attachment],
         staged: &mut Staged,
     ) -> Result<(), Error> {
@@ -158,7 +160,7 @@ fn on_device(
     objects: &Slots<Object>,
     mesh: InstanceId,
     attached: &Attached,
-) -> Option<(([u32; 2], usize), Attachment)> {
+) -> Option<(ListKey, Attachment)> {
     let Attached { character, bone, offset, key, .. } = attached;
     let ObjectId { index, generation, .. } = character.object;
     let slot = character.index as usize;

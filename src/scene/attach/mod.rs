@@ -23,6 +23,9 @@ use lists::List;
 /// mesh's bounding sphere.
 type PathKey = (ObjectId, (u32, bool), usize, [u32; 4]);
 
+/// Slot and generation of a character's object, and the index of a chunk in the object.
+type ListKey = ([u32; 2], usize);
+
 /// All attached meshes of a scene.
 #[derive(Debug, Default)]
 pub(super) struct Attachments {
@@ -31,9 +34,8 @@ pub(super) struct Attachments {
     carried: HashMap<InstanceId, Vec<InstanceId>>,
     /// Cache: for attached meshes, the paths of their bounding spheres as the bones move.
     paths: HashMap<PathKey, BonePath>,
-    /// One list per chunk in which any character carries a mesh or has carried one before. The key is the slot and
-    /// generation of the object, and the index of the chunk.
-    lists: BTreeMap<([u32; 2], usize), List>,
+    /// One list per chunk in which any character carries a mesh or has carried one before.
+    lists: BTreeMap<ListKey, List>,
     /// Version of `lists`: the number of lists allocated and dropped so far. Jobs prepared for another version are outdated.
     pub version: u64,
     /// Version of the layout that the lists were written for; `None` if attachments have changed since.

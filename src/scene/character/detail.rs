@@ -58,7 +58,7 @@ impl Detail {
             bones.filter(|(_, priority)| **priority == 1.0).map(|(bone, _)| bone.name.clone()).collect();
         let mut tiers = Tiers::new(model, &options.tiers, &keep).map_err(of)?;
         let set = ClipSet::new(&tiers.clips.iter().collect::<Vec<_>>())?;
-        let (gate, unit) = gate(options, (model, &user), &tiers, &set)?;
+        let (gate, unit) = gate(options, model, &user, &tiers, &set)?;
         tiers.clips.clear();
         let falling = |range: DistanceRange| [range.min, (range.max - range.min).recip()];
         let [omega_start, omega_rate] = options.gate.range().map_or([0.0; 2], falling);
@@ -119,7 +119,8 @@ fn in_tiers(skeleton: &Skeleton, of_model: &[f32]) -> Vec<f32> {
 /// The gate, and the unit of its motion in model units; 1 for a gate without motion.
 fn gate(
     options: &CharacterOptions<'_>,
-    (model, user): (&Model, &[f32]),
+    model: &Model,
+    user: &[f32],
     tiers: &Tiers,
     set: &ClipSet,
 ) -> Result<(Gate, f32), InputError> {

@@ -9,7 +9,7 @@ use crate::scene::chunk::Chunk;
 use crate::scene::drawable::Drawable;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::material::Looks;
-use crate::scene::mesh::{self, MeshDrawable};
+use crate::scene::mesh::{self, MergedMesh, MeshDrawable};
 
 impl Character {
     /// Binds the page buffers of all chunks again, after some page buffers were replaced.
@@ -72,9 +72,8 @@ impl Character {
         let mut drawables: Vec<Box<dyn Drawable>> = Vec::new();
         let skins = runtimes.first().into_iter().flat_map(|runtime| &runtime.skins);
         for (index, skin) in skins.enumerate() {
-            let mesh = (&skin.mesh, &*skin.clusters);
-            let of = (&self.merged, looks);
-            drawables.push(Box::new(mesh::drawable((gpu, layouts), of, index, mesh, Some(skin.pages()))?));
+            let (of, pages) = (MergedMesh { merged: &self.merged, looks, index }, Some(skin.pages()));
+            drawables.push(Box::new(mesh::drawable(gpu, layouts, &of, &skin.mesh, &skin.clusters, pages)?));
         }
         Ok(Chunk::new(0..0, drawables))
     }

@@ -32,13 +32,14 @@ pub(super) struct CharacterLayer {
 
 /// The weight of a layer for one instance: a linear change from `from` to `to`, which starts at scene time `start`.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Weight {
-    from: f32,
-    to: f32,
-    start: f64,
-    seconds: f64,
+pub(in crate::scene) struct Weight {
+    /// The weight at `start`, which [`Character::fade`] sets.
+    pub from: f32,
+    pub to: f32,
+    pub start: f64,
+    pub seconds: f32,
     /// Whether the layer's clip becomes the base clip at the end of the change.
-    hands_over: bool,
+    pub hands_over: bool,
 }
 
 impl Weight {
@@ -47,12 +48,12 @@ impl Weight {
         if self.is_reached(now) {
             return self.to;
         }
-        let part = ((now - self.start) / self.seconds).clamp(0.0, 1.0) as f32;
+        let part = ((now - self.start) / f64::from(self.seconds)).clamp(0.0, 1.0) as f32;
         self.from + (self.to - self.from) * part
     }
 
     fn is_reached(&self, now: f64) -> bool {
-        now >= self.start + self.seconds
+        now >= self.start + f64::from(self.seconds)
     }
 
     fn is_heard(&self) -> bool {
@@ -110,23 +111,17 @@ impl Character {
         Ok(())
     }
 
-    /// Changes a layer's weight linearly to `to` over `seconds`, from scene time `now` on. With `hands_over`, the layer's clip
-    /// becomes the base clip at the end.
-    pub fn fade(
-        &mut self,
-        index: u32,
-        layer: usize,
-        (to, seconds, hands_over): (f32, f32, bool),
-        now: f64,
-    ) -> Result<(), InputError> {
+    /// Changes a layer's weight linearly, from its value at `weight.start` to `weight.to`.
+    pub fn fade(&mut self, index: u32, layer: usize, weight: Weight) -> Result<(), InputError> {
+        let Weight { to, start, seconds, .. } = weight;
         InputError::check((0.0..=1.0).contains(&to), "weight", to, || "must be in 0..=1")?;
         InputError::check((0.0..=1e6).contains(&seconds), "seconds", seconds, || "must be in 0..=1e6")?;
         let layer = self.layer(layer)?;
-        if hands_over && layer.mask.is_some() {
+        if weight.hands_over && layer.mask.is_some() {
             return Err(InputError::new("layer", "masked", "must be a layer on all bones"));
         }
-        let from = layer.weights[index as usize].at(now);
-        layer.set(index, Weight { from, to, start: now, seconds: seconds.into(), hands_over });
+        let from = layer.weights[index as usize].at(start);
+        layer.set(index, Weight { from, ..weight });
         Ok(())
     }
 
@@ -266,7 +261,8 @@ impl Reach {
 /// and a mask.
 pub(super) fn layered_pose<'a>(
     model: &Model,
-    (clip, seconds): (usize, f32),
+    clip: usize,
+    seconds: f32,
     above: impl Iterator<Item = (usize, f32, f32, &'a Option<Vec<f32>>)>,
 ) -> Pose {
     let mut pose = Pose::on_host(&model.skeleton, &model.clips[clip], seconds);
@@ -318,7 +314,7 @@ mod tests {
             let mask = Some(mask_below(&model.skeleton, usize::from(moment)).expect("a bone"));
             let above =
                 (1..model.clips.len()).map(|clip| (clip, part * model.clips[clip].duration(), 0.6, &mask));
-            let pose = layered_pose(&model, (0, part * model.clips[0].duration()), above);
+            let pose = layered_pose(&model, 0, part * model.clips[0].duration(), above);
             for matrix in &pose.model_matrices {
                 farthest = farthest.max(Vec3::from(matrix.map(|row| row[3])).distance(reach.center));
             }

@@ -32,6 +32,7 @@ use detail::Detail;
 pub use detail::SkeletonStatistics;
 pub(super) use detail::TICKS;
 use driven::Driven;
+pub(super) use layers::Weight;
 use layers::{CharacterLayer, Reach};
 use runtime::{Room, Runtime, Shared};
 
@@ -81,7 +82,8 @@ impl Character {
         gpu: &Gpu,
         mut merged: Merged,
         options: &CharacterOptions<'_>,
-        (capacity, keeps_last): (usize, bool),
+        capacity: usize,
+        keeps_last: bool,
     ) -> Result<Self, Error> {
         let motions = options.root_motion.map(|root| root.take(&mut merged.model)).transpose()?;
         merged.model.motion = Some(motion_bounds(&merged.model)?);
@@ -92,7 +94,7 @@ impl Character {
         let layers = CharacterLayer::of_masks(model, &options.layers, bone, capacity)?;
         let masks = layers.iter().map(|layer| layer.mask.clone()).collect();
         let radii = tiers.bone_radii[..model.skeleton.len()].to_vec();
-        let shared = Shared::new(gpu, model, (set, gate), (tiers, masks))?;
+        let shared = Shared::new(gpu, model, set, gate, tiers, masks)?;
         let follows = radii.iter().zip(followed(model));
         let radii: Vec<_> = follows.map(|(radius, follows)| follows.then_some(*radius)).collect();
         let reach = (!layers.is_empty()).then(|| Reach::new(model, &radii));

@@ -113,7 +113,7 @@ impl Character {
             Ok((clip, seconds, weight, &layer.mask))
         });
         let above = above.collect::<Result<Vec<_>, InputError>>()?;
-        Ok(layered_pose(&self.merged.model, (clip, seconds), above.into_iter()))
+        Ok(layered_pose(&self.merged.model, clip, seconds, above.into_iter()))
     }
 
     /// The low and the high corner of a box around a posed instance, in the target space of `placed`. All vertices that

@@ -43,8 +43,10 @@ impl Shared {
     pub fn new(
         gpu: &Gpu,
         model: &Model,
-        (set, gate): (ClipSet, Gate),
-        (tiers, masks): (Tiers, Vec<Option<Vec<f32>>>),
+        set: ClipSet,
+        gate: Gate,
+        tiers: Tiers,
+        masks: Vec<Option<Vec<f32>>>,
     ) -> Result<Self, Error> {
         let clips = ClipBuffers::new(gpu, &set)?;
         let own = |mesh: &Mesh| own_levels(mesh, &level_errors(&model.meshes));
@@ -64,8 +66,8 @@ impl Shared {
 
     /// Creates the shared data of the same character on another device.
     pub fn on(&self, gpu: &Gpu, model: &Model) -> Result<Self, Error> {
-        let made = (self.set.clone(), self.gate.clone());
-        Self::new(gpu, model, made, (self.tiers.clone(), self.masks.clone()))
+        let Self { set, gate, tiers, masks, .. } = self;
+        Self::new(gpu, model, set.clone(), gate.clone(), tiers.clone(), masks.clone())
     }
 }
 

@@ -116,7 +116,8 @@ impl PartMaterials {
     /// As for [`PartMaterials::new`].
     pub fn changed(
         &self,
-        (gpu, layouts): (&Gpu, &SceneLayouts),
+        gpu: &Gpu,
+        layouts: &SceneLayouts,
         looks: &Looks,
         samplings: [Sampling; 2],
         anew: bool,
@@ -145,7 +146,8 @@ impl PartMaterials {
     pub fn samplings_with(
         &self,
         looks: &Looks,
-        (index, old): (usize, &Material),
+        index: usize,
+        old: &Material,
     ) -> Result<[Sampling; 2], InputError> {
         let new = &looks.materials[index];
         let mut samplings = self.samplings;

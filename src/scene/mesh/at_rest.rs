@@ -31,7 +31,7 @@ impl ObjectKind for MeshAtRest {
     fn made_on<'a>(&'a self, target: MakeOn<'a>) -> Making<'a> {
         let MakeOn { gpu, layouts, looks, capacity } = target;
         Box::pin(async move {
-            let (drawables, _) = drawn(gpu, layouts, (&self.0, looks.unwrap_or(&Looks::NONE)))?;
+            let (drawables, _) = drawn(gpu, layouts, &self.0, looks.unwrap_or(&Looks::NONE))?;
             Ok(OnDevice::chunks(vec![Chunk::new(0..capacity, drawables)]))
         })
     }

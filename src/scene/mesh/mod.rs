@@ -59,13 +59,15 @@ pub fn moving_merged(model: &Model) -> Result<Merged, InputError> {
 pub(super) fn drawn(
     gpu: &Gpu,
     layouts: &SceneLayouts,
-    (merged, looks): (&Merged, &Looks),
+    merged: &Merged,
+    looks: &Looks,
 ) -> Result<Drawn, Error> {
     let (mut drawables, mut draws): Drawn = (Vec::new(), Vec::new());
     let mut upload = |merged: &Merged, index: usize| -> Result<(), Error> {
         let (buffers, clusters) = MeshBuffers::new(gpu, &merged.model, &merged.model.meshes[index])?;
         draws.extend(part_draws(merged, index, &buffers));
-        let drawn = drawable((gpu, layouts), (merged, looks), index, (&buffers, &clusters), None)?;
+        let of = MergedMesh { merged, looks, index };
+        let drawn = drawable(gpu, layouts, &of, &buffers, &clusters, None)?;
         drawables.push(Box::new(drawn));
         Ok(())
     };
@@ -146,14 +148,24 @@ pub(super) fn part_draws(merged: &Merged, mesh: usize, buffers: &MeshBuffers) ->
 pub(super) const NOTHING: SceneDraw =
     SceneDraw { index_count: 0, instance_count: 0, first_index: 0, base_vertex: 0, first_instance: 0 };
 
+/// A mesh of merged meshes, with the object's materials.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MergedMesh<'a> {
+    pub merged: &'a Merged,
+    pub looks: &'a Looks,
+    pub index: usize,
+}
+
 /// The drawable of a merged mesh. With `pages`, its vertices are in these pages; otherwise they are in `buffers`.
 pub(super) fn drawable(
-    (gpu, layouts): (&Gpu, &SceneLayouts),
-    (merged, looks): (&Merged, &Looks),
-    index: usize,
-    (buffers, clusters): (&MeshBuffers, &Clusters),
+    gpu: &Gpu,
+    layouts: &SceneLayouts,
+    of: &MergedMesh<'_>,
+    buffers: &MeshBuffers,
+    clusters: &Clusters,
     pages: Option<&PageBuffers>,
 ) -> Result<MeshDrawable, Error> {
+    let MergedMesh { merged, looks, index } = *of;
     let mesh = &merged.model.meshes[index];
     let own: Vec<&Part> = merged.parts.iter().filter(|part| part.mesh == index).collect();
     let part_of = parts_of_vertices(mesh, &merged.errors, &own);

@@ -1,7 +1,5 @@
 //! An object's work in a frame: allocating memory for visible instances, laying out buffers, and staging changes.
 
-use std::sync::Arc;
-
 use glam::Vec4;
 
 use super::Object;
@@ -13,7 +11,7 @@ use crate::lod::{SceneInstance, SelectView};
 use crate::scene::chunk::{Chunk, common};
 use crate::scene::handles::{ObjectId, Slots};
 use crate::scene::instances;
-use crate::scene::layout::{Counted, CountedObject, Layout, ObjectRange};
+use crate::scene::layout::{Counted, CountedObject, LaidOut, Layout, ObjectRange};
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::object_kind::{Fitted, Provided, Replaced, SeenBy};
 use crate::scene::quality::ErrorBudget;
@@ -27,7 +25,8 @@ impl Object {
         &mut self,
         gpu: &Gpu,
         layouts: &SceneLayouts,
-        (views, triangle_limits): (&[SelectView], &[Option<u32>]),
+        views: &[SelectView],
+        triangle_limits: &[Option<u32>],
         now: f64,
     ) -> Result<bool, Error> {
         let all = Chunk::new(0..self.instances.capacity(), Vec::new());
@@ -50,14 +49,16 @@ impl Object {
     /// Stages the object's changes since the last frame. `now` is the scene's time in seconds.
     pub(in crate::scene) fn stage(
         &mut self,
-        (staged, layout): (&mut Staged, &Layout),
-        (frame, now): (&Frame, f64),
+        staged: &mut Staged,
+        layout: &Layout,
+        frame: &Frame,
+        now: f64,
     ) -> Result<(), Error> {
         for (at, last) in self.instances.take_last() {
-            stage_instances((staged, &layout.last_instances), &self.chunks, at, &last)?;
+            stage_instances(staged, &layout.last_instances, &self.chunks, at, &last)?;
         }
         for (at, changed) in self.instances.take_changed() {
-            stage_instances((staged, &layout.instances), &self.chunks, at, changed)?;
+            stage_instances(staged, &layout.instances, &self.chunks, at, changed)?;
         }
         if std::mem::take(&mut self.is_rebound) {
             self.chunks
@@ -77,7 +78,8 @@ impl Object {
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
-        (pass, budget): (&AssignPass, ErrorBudget),
+        pass: &AssignPass,
+        budget: ErrorBudget,
         staged: &mut Staged,
     ) -> Result<(), Error> {
         let is_new = self.fitted != layout.version;
@@ -101,7 +103,8 @@ impl Object {
 
 /// Stages changed instances of an object: `run` holds consecutive instances, the first with index `at`.
 fn stage_instances(
-    (staged, to): (&mut Staged, &Buffer<SceneInstance>),
+    staged: &mut Staged,
+    to: &Buffer<SceneInstance>,
     chunks: &[Chunk],
     at: usize,
     run: &[SceneInstance],
@@ -136,7 +139,8 @@ fn stage_params(staged: &mut Staged, chunk: &Chunk, number: u32, errors: &[f32])
 pub(in crate::scene) fn laid_out(
     gpu: &Gpu,
     objects: &mut Slots<Object>,
-    (version, keeps_last): (u64, bool),
+    version: u64,
+    keeps_last: bool,
 ) -> Result<Layout, Error> {
     let mut range = ObjectRange::default();
     let (mut all, mut draws, mut sorted) = (Vec::new(), Vec::new(), Vec::new());
@@ -165,8 +169,9 @@ pub(in crate::scene) fn laid_out(
             all.push(object.lod_object(&object.chunks[at]));
         }
     }
-    let counted = Arc::new(Counted::new(objects));
-    Layout::new(gpu, (&all, draws, &sorted), range, (version, keeps_last, counted), triangle_unit)
+    let counted = Counted::new(objects);
+    let laid_out = LaidOut { objects: &all, draws, sorted: &sorted, end: range, counted, triangle_unit };
+    Layout::new(gpu, laid_out, version, keeps_last)
 }
 
 impl Counted {

@@ -21,7 +21,7 @@ use crate::scene::layout::error_vectors;
 use crate::scene::layouts::SceneLayouts;
 use crate::scene::level_of_detail::LevelOfDetail;
 use crate::scene::material::Looks;
-use crate::scene::mesh::{self, Drawn, MeshAtRest, NOTHING};
+use crate::scene::mesh::{self, MeshAtRest, NOTHING};
 use crate::scene::object_kind::ObjectKind;
 use crate::scene::options::CharacterOptions;
 use crate::scene::quality::ErrorBudget;
@@ -81,12 +81,13 @@ pub(crate) struct Object {
 }
 
 impl Object {
-    /// Creates a visible object of the given kind.
+    /// Creates a visible object of the given kind, with one level of detail.
     pub(super) fn new(
         kind: impl ObjectKind,
-        (instances, sphere): (Instances, BoundingSphere),
-        (errors, mesh_fraction): (Vec<f32>, f32),
-        (chunks, draws): (Vec<Chunk>, Vec<SceneDraw>),
+        instances: Instances,
+        sphere: BoundingSphere,
+        chunks: Vec<Chunk>,
+        draws: Vec<SceneDraw>,
     ) -> Self {
         let model_box =
             kind.model_box().map_or([sphere.center, Vec3::splat(sphere.radius)], |[low, high]| {
@@ -96,9 +97,9 @@ impl Object {
             kind: Box::new(kind),
             instances,
             sphere,
-            errors,
+            errors: vec![0.0],
             finest_error: 0.0,
-            mesh_fraction,
+            mesh_fraction: 1.0,
             level_of_detail: LevelOfDetail::default(),
             is_ranked: false,
             triangle_unit: 0,
@@ -126,11 +127,12 @@ impl Object {
     ) -> Result<Self, Error> {
         let sphere = BoundingSphere { center: Vec3::ZERO, radius: 0.0 };
         if let Some((recipe, limits)) = source.endless_recipe()? {
-            let (terrain, instances, drawn) = terrain::endless::made(gpu, layouts, source, recipe, limits)?;
-            return Ok(Self::new(terrain, (instances, sphere), (vec![0.0], 1.0), drawn));
+            let made = terrain::endless::made(gpu, layouts, source, recipe, limits)?;
+            let (terrain, instances, (chunks, draws)) = made;
+            return Ok(Self::new(terrain, instances, sphere, chunks, draws));
         }
-        let (terrain, instances, drawn) = terrain::made(gpu, layouts, source).await?;
-        Ok(Self::new(terrain, (instances, sphere), (vec![0.0], 1.0), drawn))
+        let (terrain, instances, (chunks, draws)) = terrain::made(gpu, layouts, source).await?;
+        Ok(Self::new(terrain, instances, sphere, chunks, draws))
     }
 
     /// Creates a static mesh: all meshes of a model in the rest pose.
@@ -144,10 +146,11 @@ impl Object {
         let (mut merged, sphere) = mesh::at_rest_merged(model)?;
         let looks = Looks::taken(&mut merged.model);
         looks.check_all()?;
-        let drawn = whole(&instances, mesh::drawn(gpu, layouts, (&merged, &looks))?);
+        let (drawables, draws) = mesh::drawn(gpu, layouts, &merged, &looks)?;
         let (errors, finest_error) = (mesh::errors(&merged), mesh::finest_error(&merged));
-        let object = Self::new(MeshAtRest(merged), (instances, sphere), (errors, 1.0), drawn);
-        Ok(Self { looks: Some(looks), finest_error, ..object })
+        let chunks = whole(&instances, drawables);
+        let object = Self::new(MeshAtRest(merged), instances, sphere, chunks, draws);
+        Ok(Self { looks: Some(looks), errors, finest_error, ..object })
     }
 
     /// Creates a relief-mapped mesh.
@@ -158,9 +161,9 @@ impl Object {
         capacity: usize,
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
-        let (sphere, drawn) = relief::drawn(gpu, layouts, relief)?;
-        let drawn = whole(&instances, drawn);
-        Ok(Self::new(relief.clone(), (instances, sphere), (vec![0.0], 1.0), drawn))
+        let (sphere, (drawables, draws)) = relief::drawn(gpu, layouts, relief)?;
+        let chunks = whole(&instances, drawables);
+        Ok(Self::new(relief.clone(), instances, sphere, chunks, draws))
     }
 
     /// Creates an object of a caller-defined kind.
@@ -172,29 +175,32 @@ impl Object {
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let own = OwnKind::new(kind)?;
-        let drawn = whole(&instances, own.drawn(gpu, layouts)?);
+        let (drawables, draws) = own.drawn(gpu, layouts)?;
         let (sphere, errors) = (own.kind.bounding_sphere(), own.kind.errors().to_vec());
-        Ok(Self::new(own, (instances, sphere), (errors, 1.0), drawn))
+        let chunks = whole(&instances, drawables);
+        Ok(Self { errors, ..Self::new(own, instances, sphere, chunks, draws) })
     }
 
     /// Creates a character: a model with clips.
     pub(super) fn of_character(
         gpu: &Gpu,
         layouts: &SceneLayouts,
-        (model, options): (&Model, &CharacterOptions<'_>),
+        model: &Model,
+        options: &CharacterOptions<'_>,
         capacity: usize,
-        (budget, keeps_last): (ErrorBudget, bool),
+        budget: ErrorBudget,
+        keeps_last: bool,
     ) -> Result<Self, Error> {
         let instances = room(capacity)?;
         let mut merged = mesh::moving_merged(model)?;
         let looks = Looks::taken(&mut merged.model);
         looks.check_all()?;
         let finest_error = mesh::finest_error(&merged);
-        let character = Character::new(gpu, merged, options, (instances.capacity(), keeps_last))?;
-        let drawn = (character.chunks_of_looks(gpu, layouts, &looks)?, character.draws());
+        let character = Character::new(gpu, merged, options, instances.capacity(), keeps_last)?;
+        let (chunks, draws) = (character.chunks_of_looks(gpu, layouts, &looks)?, character.draws());
         let (sphere, errors) = (character.sphere(), character.errors());
-        let object = Self::new(character, (instances, sphere), (errors, budget.mesh), drawn);
-        Ok(Self { looks: Some(looks), finest_error, ..object })
+        let object = Self::new(character, instances, sphere, chunks, draws);
+        Ok(Self { looks: Some(looks), errors, mesh_fraction: budget.mesh, finest_error, ..object })
     }
 
     /// The same object with a queue of uploads that still wait on the host.
@@ -338,8 +344,8 @@ impl Object {
 }
 
 /// A single chunk that holds all instances.
-fn whole(instances: &Instances, (drawables, draws): Drawn) -> (Vec<Chunk>, Vec<SceneDraw>) {
-    (vec![Chunk::new(0..instances.capacity(), drawables)], draws)
+fn whole(instances: &Instances, drawables: Vec<Box<dyn Drawable>>) -> Vec<Chunk> {
+    vec![Chunk::new(0..instances.capacity(), drawables)]
 }
 
 /// Empty storage for at least `capacity` instances.

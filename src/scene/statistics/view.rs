@@ -12,18 +12,24 @@ use crate::scene::object::Object;
 /// Facts about a frame whose counts are in flight.
 #[derive(Debug)]
 struct About {
-    frame: u64,
     counted: Arc<Counted>,
-    pixels: f32,
-    /// Smallest focal length of the view's perspective cameras, in pixels; `None` if the view has no perspective
-    /// camera.
-    focal: Option<f32>,
     /// LOD bias of each object; empty if all biases are 1.
     lod_bias: Vec<f32>,
+    of_view: FrameOfView,
+}
+
+/// Facts about a view in a frame.
+#[derive(Debug)]
+pub(in crate::scene) struct FrameOfView {
+    pub frame: u64,
+    pub pixels: f32,
+    /// Smallest focal length of the view's perspective cameras, in pixels; `None` if the view has no perspective
+    /// camera.
+    pub focal: Option<f32>,
     /// Whether the view has a budget of triangles.
-    has_budget: bool,
+    pub has_budget: bool,
     /// Error in pixels of each object at full detail, where it exceeds `pixels`; empty if none does.
-    finest: Vec<f32>,
+    pub finest: Vec<f32>,
 }
 
 /// Readback of the counts of one view.
@@ -51,17 +57,17 @@ impl ViewCounts {
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        (draws, budget): (&wgpu::Buffer, &wgpu::Buffer),
-        (frame, pixels, focal, has_budget): (u64, f32, Option<f32>, bool),
-        (objects, finest): (&Slots<Object>, Vec<f32>),
+        draws: &wgpu::Buffer,
+        budget: &wgpu::Buffer,
+        of_view: FrameOfView,
+        objects: &Slots<Object>,
     ) {
         self.arrive();
         // What is drawn coarser than the view asks for has no bound.
         let bias = |object: &Object| if object.kind.is_complete() { object.lod_bias } else { f32::INFINITY };
         let is_coarser = objects.iter().any(|object| bias(object) != 1.0);
         let lod_bias = objects.iter().filter(|_| is_coarser).map(bias).collect();
-        let about =
-            About { frame, counted: self.counted.clone(), pixels, focal, lod_bias, has_budget, finest };
+        let about = About { counted: self.counted.clone(), lod_bias, of_view };
         self.ring.record(encoder, about, |encoder, to| {
             encoder.copy_buffer_to_buffer(draws, 0, to, 0, draws.size());
             encoder.copy_buffer_to_buffer(budget, 0, to, draws.size(), size_of::<BudgetState>() as u64);
@@ -76,6 +82,7 @@ impl ViewCounts {
 
     fn arrive(&mut self) {
         let Some((about, bytes)) = self.ring.take() else { return };
+        let FrameOfView { frame, pixels: allowed, focal, has_budget, finest } = about.of_view;
         let (bytes, state) = bytes.split_at(bytes.len() - size_of::<BudgetState>());
         let state: BudgetState = bytemuck::pod_read_unaligned(state);
         let whole = bytes.len() / size_of::<SceneDraw>() * size_of::<SceneDraw>();
@@ -85,21 +92,21 @@ impl ViewCounts {
                 let coarser = about.lod_bias.get(at).copied().unwrap_or(1.0);
                 let coarser = coarser * counted.bias * state.factor(counted.rank);
                 let factor = 1.0 + counted.mesh_fraction * (coarser - 1.0).max(0.0);
-                let bound = coarser_pixels(about.pixels, factor, about.focal);
-                let bound = about.finest.get(at).copied().unwrap_or(0.0).max(bound);
+                let bound = coarser_pixels(allowed, factor, focal);
+                let bound = finest.get(at).copied().unwrap_or(0.0).max(bound);
                 let pixels = if counted.is_bounded { bound } else { f32::INFINITY };
                 let levels = (0..counted.levels).map(|level| counted.level(level, &draws)).collect();
                 ObjectStatistics { object: counted.object, pixels, levels }
             })
             .collect();
-        let pixels = objects.iter().map(|object| object.pixels).fold(about.pixels, f32::max);
+        let pixels = objects.iter().map(|object| object.pixels).fold(allowed, f32::max);
         let factors = state.factors.as_flattened().iter();
-        let budget = about.has_budget.then(|| BudgetStatistics {
+        let budget = has_budget.then(|| BudgetStatistics {
             factor: factors.copied().fold(1.0, f32::max),
             is_missed: state.is_missed != 0,
             fades_ended: state.ends_fades != 0,
         });
-        self.last = Some(ViewStatistics { frame: about.frame, pixels, budget, objects });
+        self.last = Some(ViewStatistics { frame, pixels, budget, objects });
     }
 }
 

@@ -67,7 +67,8 @@ pub(in crate::scene) async fn made(
             let (placement, sphere) = placed(config, at, *patch, extremes(heights))?;
             instances.spawn(&placement, &sphere);
         }
-        let drawable = drawable((gpu, layouts), (source, &zones, &triangles), part, (first, shown))?;
+        let geometry = geometry(gpu, source, &zones, &triangles, part, first, shown)?;
+        let drawable = TerrainDrawable::new(gpu, layouts, geometry, source.style)?;
         first = slots.end;
         chunks.push(Chunk::new(slots, vec![Box::new(drawable)]));
     }
@@ -117,13 +118,16 @@ pub(super) fn params_of(source: &TerrainSource, width: u32, size: u32, zones: &M
     }
 }
 
-/// The drawable of the patches `shown` in one part of the heights. `first` is the index of the first of these patches.
-fn drawable(
-    (gpu, layouts): (&Gpu, &SceneLayouts),
-    (source, zones, triangles): (&TerrainSource, &Materials, &Buffer<u32>),
+/// The geometry of the patches `shown` in one part of the heights. `first` is the index of the first of these patches.
+fn geometry(
+    gpu: &Gpu,
+    source: &TerrainSource,
+    zones: &Materials,
+    triangles: &Buffer<u32>,
     fields: &Fields,
-    (first, shown): (usize, &[[i32; 2]]),
-) -> Result<TerrainDrawable, Error> {
+    first: usize,
+    shown: &[[i32; 2]],
+) -> Result<TerrainGeometry, Error> {
     let config = source.config();
     let params = TerrainParams {
         first_patch: first as u32,
@@ -133,7 +137,7 @@ fn drawable(
     if !shown.is_empty() {
         patches.write(gpu, &listed(config, shown))?;
     }
-    let geometry = TerrainGeometry {
+    Ok(TerrainGeometry {
         params: Uniform::new(gpu, "terrain", &params)?,
         heights: fields.heights.clone(),
         patches,
@@ -142,8 +146,7 @@ fn drawable(
         has_holes: false,
         normals: Buffer::new(gpu, "no normals", 1)?,
         zones: zones.clone(),
-    };
-    Ok(TerrainDrawable::new(gpu, layouts, geometry, source.style)?)
+    })
 }
 
 /// The patches in shader format. Patch i of the list shows height window i.

@@ -23,7 +23,8 @@ impl View {
         &mut self,
         gpu: &Gpu,
         pass: &AttachPass,
-        (attachments, objects): (&Attachments, &Slots<Object>),
+        attachments: &Attachments,
+        objects: &Slots<Object>,
         layout: &Layout,
     ) -> Result<(), Error> {
         let Some(lists) = &mut self.lists else { return Ok(()) };

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::View;
 use crate::gpu::{Buffer, Gpu, Staged, Uniform, Upload as _};
-use crate::lod::BudgetState;
 use crate::lod::budget::{BudgetBuffers, BudgetParams, BudgetPass, BudgetStage, BudgetStages, BudgetWork};
+use crate::lod::{BudgetState, SelectView};
 use crate::scene::Scene;
 use crate::scene::layout::Layout;
 use crate::scene::pacer::Pacer;
@@ -119,7 +119,7 @@ impl View {
     }
 
     /// Stages the triangle limit, in units of 2^`unit` triangles.
-    pub(super) fn stage_budget(&self, staged: &mut Staged, (blocks, unit): (u32, u32)) -> Result<(), Error> {
+    pub(super) fn stage_budget(&self, staged: &mut Staged, blocks: u32, unit: u32) -> Result<(), Error> {
         let Some(budget) = self.budget.budget.as_ref().filter(|_| self.has_budget()) else { return Ok(()) };
         let limit = self.triangle_limit().unwrap_or(u32::MAX) >> unit;
         Ok(staged.uniform(&budget.params, &BudgetParams { limit, blocks })?)
@@ -138,7 +138,9 @@ pub(super) fn prepared(
     gpu: &Gpu,
     layout: &Layout,
     pass: &BudgetPass,
-    (view, metrics, decisions): (&Uniform<crate::lod::SelectView>, &Buffer<u32>, &Buffer<u32>),
+    view: &Uniform<SelectView>,
+    metrics: &Buffer<u32>,
+    decisions: &Buffer<u32>,
     budget: &Budget,
 ) -> Result<BudgetStages, Error> {
     let buffers = BudgetBuffers {

@@ -8,7 +8,7 @@ use crate::scene::handles::Slots;
 use crate::scene::layout::Counted;
 use crate::scene::object::Object;
 use crate::scene::statistics::ViewStatistics;
-use crate::scene::statistics::view::ViewCounts;
+use crate::scene::statistics::view::{FrameOfView, ViewCounts};
 
 impl View {
     /// Statistics of the last frame whose counts have arrived. `None` if statistics are off
@@ -42,11 +42,11 @@ impl View {
         frame: u64,
         objects: &Slots<Object>,
     ) {
-        let (focal, has_budget) = (self.shortest_focal(), self.has_budget());
+        let (pixels, focal, has_budget) = (self.quality.pixels, self.shortest_focal(), self.has_budget());
         let finest = self.finest_pixels(objects);
         let (Some(counts), Some(lists)) = (&mut self.counts, &self.lists) else { return };
-        let buffers = (lists.arguments.raw(), lists.budget_state.raw());
-        counts.record(encoder, buffers, (frame, self.quality.pixels, focal, has_budget), (objects, finest));
+        let of_view = FrameOfView { frame, pixels, focal, has_budget, finest };
+        counts.record(encoder, lists.arguments.raw(), lists.budget_state.raw(), of_view, objects);
     }
 
     /// For each object, an upper bound in pixels of the error of its instances at full detail, where this error is above what the

@@ -1,7 +1,7 @@
 //! Device buffers of a view: lists of visible instances, and their draws.
 
 use super::attached::AttachedJobs;
-use super::budget::Budget;
+use super::budget::{self, Budget};
 use crate::Error;
 use crate::asset::Affine;
 use crate::gpu::{Buffer, Gpu, GpuError, Group, Job, Uniform};
@@ -28,6 +28,15 @@ pub(in crate::scene) struct ViewPasses<'a> {
     pub budget: &'a BudgetPass,
     pub list: &'a ListPass,
     pub sorted: &'a SortedPass,
+}
+
+/// The uniforms, the sun's shadow map and the budget that a view's lists bind.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BoundByView<'a> {
+    pub select: &'a Uniform<SelectView>,
+    pub drawn: &'a Uniform<SceneView>,
+    pub map: Option<&'a wgpu::TextureView>,
+    pub budget: Option<&'a Budget>,
 }
 
 /// Draws of transparent surfaces, one for each instance and part, and the job that writes them.
@@ -81,11 +90,12 @@ impl ViewLists {
     pub(super) fn new(
         gpu: &Gpu,
         layout: &Layout,
-        (view, drawn): (&Uniform<SelectView>, &Uniform<SceneView>),
+        layouts: &SceneLayouts,
+        objects: &Slots<Object>,
         passes: ViewPasses<'_>,
-        budget: Option<&Budget>,
-        (layouts, objects, map): (&SceneLayouts, &Slots<Object>, Option<&wgpu::TextureView>),
+        bound: BoundByView<'_>,
     ) -> Result<Self, Error> {
+        let BoundByView { select: view, drawn, map, budget } = bound;
         let instances = layout.instances.len();
         let decisions = Buffer::new(gpu, "decisions", instances)?;
         let metrics = Buffer::new(gpu, "metrics", instances)?;
@@ -124,10 +134,9 @@ impl ViewLists {
             budget: &budget_state,
         };
         let decide = passes.decide.prepare(gpu, buffers)?;
-        let of_view = (view, &metrics, &decisions);
-        let budget = budget
-            .map(|budget| super::budget::prepared(gpu, layout, passes.budget, of_view, budget))
-            .transpose()?;
+        let prepared =
+            |of: &Budget| budget::prepared(gpu, layout, passes.budget, view, &metrics, &decisions, of);
+        let budget = budget.map(prepared).transpose()?;
         let buffers = ListBuffers {
             objects: &layout.objects,
             block_objects: &layout.block_objects,
@@ -141,7 +150,7 @@ impl ViewLists {
         let group = layouts.view(gpu, drawn, &instances, map)?;
         let in_view = objects.iter().map(|object| object.kind.in_view(gpu, layouts, object.handle));
         Ok(Self {
-            sorted: sorted(gpu, layout, passes.sorted, (&decisions, &arguments))?,
+            sorted: sorted(gpu, layout, passes.sorted, &decisions, &arguments)?,
             version: layout.version,
             lists,
             arguments,
@@ -169,7 +178,8 @@ impl ViewLists {
         &mut self,
         gpu: &Gpu,
         layout: &Layout,
-        (layouts, drawn): (&SceneLayouts, &Uniform<SceneView>),
+        layouts: &SceneLayouts,
+        drawn: &Uniform<SceneView>,
         map: Option<&wgpu::TextureView>,
     ) -> Result<(), GpuError> {
         if self.map.as_ref() != map {
@@ -195,7 +205,8 @@ fn sorted(
     gpu: &Gpu,
     layout: &Layout,
     pass: &SortedPass,
-    (decisions, arguments): (&Buffer<u32>, &Buffer<SceneDraw>),
+    decisions: &Buffer<u32>,
+    arguments: &Buffer<SceneDraw>,
 ) -> Result<Option<SortedLists>, Error> {
     let (sorted, count) = (&layout.sorted, layout.sorted.len());
     if count == 0 {

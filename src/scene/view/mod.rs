@@ -27,7 +27,7 @@ use crate::scene::statistics::view::ViewCounts;
 use crate::shared::render::scene_view::SceneView;
 use crate::{Error, InputError};
 use budget::BudgetOfView;
-use lists::{ViewLists, ViewPasses};
+use lists::{BoundByView, ViewLists, ViewPasses};
 pub(crate) use shadow::ViewShadow;
 use uniforms::{clip_rows, lod_camera};
 
@@ -145,11 +145,7 @@ pub(super) struct Moment {
 }
 
 impl View {
-    pub(super) fn new(
-        gpu: &Gpu,
-        (scene, device): (SceneNumber, u32),
-        quality: Quality,
-    ) -> Result<Self, Error> {
+    pub(super) fn new(gpu: &Gpu, scene: SceneNumber, device: u32, quality: Quality) -> Result<Self, Error> {
         quality.validate()?;
         let select = Uniform::new(gpu, "what a view sees", &SelectView::nothing())?;
         let drawn = Uniform::new(gpu, "view", &SceneView::nothing())?;
@@ -323,18 +319,19 @@ impl View {
         gpu: &Gpu,
         layout: &Layout,
         passes: ViewPasses<'_>,
-        (layouts, objects): (&SceneLayouts, &Slots<Object>),
+        layouts: &SceneLayouts,
+        objects: &Slots<Object>,
     ) -> Result<(), Error> {
         let budget = if self.has_budget() { Some(self.budget_on(gpu)?) } else { None };
         let map = self.shadow.as_ref().map(|shadow| &shadow.map);
         match &mut self.lists {
             Some(lists) if lists.version == layout.version => {
-                lists.bind_map(gpu, layout, (layouts, &self.drawn), map)?;
+                lists.bind_map(gpu, layout, layouts, &self.drawn, map)?;
             }
             lists => {
-                let groups = (layouts, objects, map);
-                let uniforms = (&self.select, &self.drawn);
-                *lists = Some(ViewLists::new(gpu, layout, uniforms, passes, budget.as_deref(), groups)?);
+                let (select, drawn, budget) = (&self.select, &self.drawn, budget.as_deref());
+                let bound = BoundByView { select, drawn, map, budget };
+                *lists = Some(ViewLists::new(gpu, layout, layouts, objects, passes, bound)?);
             }
         }
         Ok(())
@@ -359,7 +356,8 @@ impl View {
     pub(super) fn stage(
         &mut self,
         staged: &mut Staged,
-        (layout, light): (&Layout, &Light),
+        layout: &Layout,
+        light: &Light,
         sides: impl Iterator<Item = [bool; 2]>,
         now: Moment,
     ) -> Result<(), Error> {
@@ -367,7 +365,7 @@ impl View {
         let is_first = number == 0;
         let last = self.last.filter(|last| last.frame + 1 == frame && !last.is_cut);
         let (camera, mut view) = self.select_view(layout.blocks, is_first)?;
-        self.stage_budget(staged, (layout.blocks, layout.triangle_unit))?;
+        self.stage_budget(staged, layout.blocks, layout.triangle_unit)?;
         view.is_next = last.is_some().into();
         view.clip_rows = clip_rows(&camera);
         view.last_clip_rows = last.map_or(view.clip_rows, |last| clip_rows(&last.camera));
@@ -379,7 +377,8 @@ impl View {
             &SceneView::new(
                 [&camera, &last.unwrap_or(camera)],
                 &view.cameras[0],
-                (light, self.shadow.as_ref()),
+                light,
+                self.shadow.as_ref(),
                 self.dither_offset(frame),
             ),
         )?;
@@ -402,7 +401,7 @@ impl View {
     /// Sorts the instances with transparent surfaces, which are drawn one by one.
     pub(super) fn order<'a>(&mut self, objects: impl Iterator<Item = &'a Object>, selected: &SelectView) {
         if let (Some(lists), Some(camera)) = (&mut self.lists, &self.camera) {
-            back_to_front(&mut lists.order, objects, (selected, camera));
+            back_to_front(&mut lists.order, objects, selected, camera);
         }
     }
 

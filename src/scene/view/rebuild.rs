@@ -21,7 +21,7 @@ impl View {
         if !self.is_of(scene.objects.scene()) {
             return Err(InputError::new("scene", "another", "must be the one that the view is of").into());
         }
-        let fresh = Self::new(&scene.gpu, (scene.objects.scene(), scene.device), self.quality)?;
+        let fresh = Self::new(&scene.gpu, scene.objects.scene(), scene.device, self.quality)?;
         let Self { device, select, drawn, .. } = fresh;
         (self.device, self.select, self.drawn) = (device, select, drawn);
         (self.lists, self.counts, self.recorded, self.last) = (None, None, None, None);

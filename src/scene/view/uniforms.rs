@@ -15,7 +15,8 @@ impl SceneView {
     pub(super) fn new(
         [camera, last]: [&Camera; 2],
         own: &LodCamera,
-        (light, shadow): (&Light, Option<&ViewShadow>),
+        light: &Light,
+        shadow: Option<&ViewShadow>,
         dither_offset: UVec2,
     ) -> Self {
         let eye = match own.perspective > 0.0 {

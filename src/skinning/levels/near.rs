@@ -281,7 +281,7 @@ impl Nearest {
     }
 
     fn add(&mut self, search: &Search<'_>, wanted: Vec3, triangle: u32) {
-        if self.is_beyond(wanted, search.spheres[triangle as usize]) {
+        if self.is_beyond(wanted, &search.spheres[triangle as usize]) {
             return;
         }
         let squared = search.off(0, wanted, triangle);
@@ -291,7 +291,8 @@ impl Nearest {
     }
 
     /// Whether a whole sphere is farther from `wanted` than the nearest triangle found so far.
-    fn is_beyond(&self, wanted: Vec3, (middle, radius): (Vec3, f32)) -> bool {
+    fn is_beyond(&self, wanted: Vec3, sphere: &(Vec3, f32)) -> bool {
+        let (middle, radius) = sphere;
         middle.distance_squared(wanted) > (self.within + radius) * (self.within + radius)
     }
 
@@ -361,7 +362,7 @@ impl<'a> Clusters<'a> {
             }
         }
         for &point in points {
-            if !best.is_beyond(wanted, self.spheres[point as usize]) {
+            if !best.is_beyond(wanted, &self.spheres[point as usize]) {
                 let own = self.around.of(point).filter(&is_own);
                 own.for_each(|triangle| best.add(search, wanted, triangle));
             }

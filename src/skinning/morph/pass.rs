@@ -44,7 +44,7 @@ impl MorphPass {
         crowd.morphed.check_holds("crowd.morphed", crowd.instances * mesh.vertices.len())?;
         crowd.instance_lods.check_holds("crowd.instance_lods", crowd.instances)?;
         let seen = crowd.instance_lods.slice().cast();
-        job(gpu, &self.kernel, (mesh, crowd), active, (seen, &crowd.morphed)).map(Some)
+        job(gpu, &self.kernel, mesh, crowd, active, seen, &crowd.morphed).map(Some)
     }
 
     /// As [`MorphPass::prepare_active`], but writes to pages that [`PagesPass`](crate::skinning::pages::PagesPass) has
@@ -64,7 +64,7 @@ impl MorphPass {
             return Ok(None);
         }
         pages.table.check_holds("pages.table", crowd.instances * mesh.clusters())?;
-        job(gpu, &self.paged, (mesh, crowd), active, (pages.table.slice(), &pages.morphed)).map(Some)
+        job(gpu, &self.paged, mesh, crowd, active, pages.table.slice(), &pages.morphed).map(Some)
     }
 }
 
@@ -73,9 +73,11 @@ impl MorphPass {
 fn job(
     gpu: &Gpu,
     kernel: &Kernel,
-    (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
+    mesh: &MeshBuffers,
+    crowd: &SkinnedCrowd,
     active: &ActiveClusters,
-    (seen, morphed): (Slice<'_, u32>, &Buffer<Vertex>),
+    seen: Slice<'_, u32>,
+    morphed: &Buffer<Vertex>,
 ) -> Result<Job, Error> {
     crowd.weights.check_holds("crowd.weights", crowd.instances * mesh.targets)?;
     let params = MorphParams {

@@ -4,31 +4,22 @@ use super::{WeightEntry, WeightSet};
 use crate::Error;
 use crate::animation::instance::{Instance, check_elapsed};
 use crate::gpu::bindings::skinning::morph_weights as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, ParamsJob, Step, Uniform, Upload};
+use crate::gpu::{Buffer, Gpu, Job, ParamsJob, Step, Uniform, Upload, pass};
 use crate::shared::skinning::morph_weights::MorphWeightsParams;
 use crate::skinning::buffers::SkinnedCrowd;
 
-/// GPU pass that evaluates the weights of morph targets.
-#[derive(Debug, Clone)]
-pub struct MorphWeightsPass {
-    kernel: Kernel,
+pass! {
+    /// GPU pass that evaluates the weights of morph targets.
+    pub struct MorphWeightsPass;
 }
 
 impl MorphWeightsPass {
-    /// Compiles the kernel.
-    ///
-    /// # Errors
-    /// [`GpuError`] if the driver cannot compile the kernel.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares the evaluation of a crowd's morph weights. `instances` gives the clip of the set that each instance
     /// plays. Layers on top of these clips are ignored. For a mesh without morph targets the job is empty.
     ///
     /// # Errors
     /// [`crate::InputError`] if there are fewer instances than the crowd has, or if the crowd belongs to another mesh;
-    /// [`GpuError`] from the device.
+    /// [`crate::gpu::GpuError`] from the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,
@@ -72,7 +63,7 @@ impl MorphWeightsJob {
     ///
     /// # Errors
     /// [`crate::InputError`] for seconds beyond ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS);
-    /// [`GpuError`].
+    /// [`crate::gpu::GpuError`].
     pub fn set(&self, gpu: &Gpu, elapsed: f32) -> Result<(), Error> {
         self.set_through(&mut &*gpu, elapsed)
     }

@@ -4,7 +4,7 @@ use super::{NO_PAGE, PageState};
 use crate::Error;
 use crate::gpu::bind::SeenAs;
 use crate::gpu::bindings::skinning::pages as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Uniform, pass};
 use crate::shared::skinning::pages::PageParams;
 use crate::skinning::buffers::{MeshBuffers, SkinnedCrowd};
 use crate::skinning::clusters::CLUSTER;
@@ -86,21 +86,12 @@ impl PageBuffers {
     }
 }
 
-/// GPU pass that assigns pages to visible instances.
-#[derive(Debug, Clone)]
-pub struct PagesPass {
-    kernel: Kernel,
+pass! {
+    /// GPU pass that assigns pages to visible instances.
+    pub struct PagesPass;
 }
 
 impl PagesPass {
-    /// Compiles the kernel.
-    ///
-    /// # Errors
-    /// [`GpuError`] if the driver cannot compile the kernel.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares the page assignment of a crowd. The levels of detail of the instances decide how many pages are needed.
     /// Record the job before [`select`](crate::skinning::select) and [`skin`](crate::skinning::skin).
     ///

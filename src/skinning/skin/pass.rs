@@ -61,7 +61,7 @@ impl SkinPass {
         skinned.check_holds("skinned", vertices)?;
         crowd.morphed.check_holds("crowd.morphed", if mesh.targets > 0 { vertices } else { 0 })?;
         let output = Output { skinned, morphed: &crowd.morphed, table: &active.pairs, last: 0 };
-        self.job(gpu, &self.kernels[usize::from(mesh.targets > 0)], (mesh, crowd), active, output)
+        self.job(gpu, &self.kernels[usize::from(mesh.targets > 0)], mesh, crowd, active, output)
     }
 
     /// As [`SkinPass::prepare_active`], but writes to pages that [`PagesPass`](crate::skinning::pages::PagesPass) has
@@ -91,14 +91,15 @@ impl SkinPass {
         active.pairs.check_holds("active.pairs", active.words(crowd.instances * mesh.clusters()))?;
         pages.table.check_holds("pages.table", crowd.instances * mesh.clusters())?;
         let PageBuffers { skinned, morphed, table, last, .. } = pages;
-        self.job(gpu, kernel, (mesh, crowd), active, Output { skinned, morphed, table, last: *last })
+        self.job(gpu, kernel, mesh, crowd, active, Output { skinned, morphed, table, last: *last })
     }
 
     fn job(
         &self,
         gpu: &Gpu,
         kernel: &Kernel,
-        (mesh, crowd): (&MeshBuffers, &SkinnedCrowd),
+        mesh: &MeshBuffers,
+        crowd: &SkinnedCrowd,
         active: &ActiveClusters,
         output: Output<'_>,
     ) -> Result<Job, Error> {

@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use crate::gpu::bindings::surface::cone_map as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Step, Uniform, pass};
 use crate::shared::surface::cone_map::ConeParams;
 use crate::surface::height_batch::{HeightMapBatch, REMEDY};
 use crate::surface::height_pyramid::Pyramids;
@@ -22,21 +22,12 @@ pub struct Cones {
     pub count: u32,
 }
 
-/// Computes cone maps of height maps on the GPU.
-#[derive(Debug, Clone)]
-pub struct ConeMapPass {
-    kernel: Kernel,
+pass! {
+    /// Computes cone maps of height maps on the GPU.
+    pub struct ConeMapPass;
 }
 
 impl ConeMapPass {
-    /// Compiles the compute pipeline of this pass.
-    ///
-    /// # Errors
-    /// [`GpuError`] for shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Allocates cone maps for a batch of height maps with these pyramids.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use super::PyramidLayout;
 use crate::gpu::bindings::surface::height_pyramid as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Step, Uniform, pass};
 use crate::shared::surface::height_pyramid::PyramidParams;
 use crate::surface::height_batch::{HeightMapBatch, REMEDY};
 use crate::surface::map::Address;
@@ -46,21 +46,12 @@ impl Pyramids {
     }
 }
 
-/// Computes max-mip pyramids on the GPU, with one dispatch per level.
-#[derive(Debug, Clone)]
-pub struct HeightPyramidPass {
-    kernel: Kernel,
+pass! {
+    /// Computes max-mip pyramids on the GPU, with one dispatch per level.
+    pub struct HeightPyramidPass;
 }
 
 impl HeightPyramidPass {
-    /// Compiles the compute pipeline of this pass.
-    ///
-    /// # Errors
-    /// [`GpuError`] for shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job that computes the pyramids of a batch of height maps.
     ///
     /// # Errors

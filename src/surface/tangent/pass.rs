@@ -2,7 +2,7 @@
 
 use super::{Adjacency, TangentMesh};
 use crate::gpu::bindings::surface::tangent as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Uniform};
+use crate::gpu::{Buffer, Gpu, Job, Uniform, pass};
 use crate::shared::surface::tangent::TangentParams;
 use crate::{Error, InputError};
 
@@ -25,7 +25,7 @@ impl TangentBuffers {
     /// Checks a mesh and uploads it together with its [`Adjacency`].
     ///
     /// # Errors
-    /// [`InputError`] if [`TangentMesh::validate`] fails; [`GpuError`] for errors of the device.
+    /// [`InputError`] if [`TangentMesh::validate`] fails; [`crate::gpu::GpuError`] for errors of the device.
     pub fn new(gpu: &Gpu, mesh: &TangentMesh<'_>) -> Result<Self, Error> {
         mesh.validate()?;
         let adjacency = Adjacency::new(mesh.positions.len(), mesh.indices);
@@ -40,26 +40,17 @@ impl TangentBuffers {
     }
 }
 
-/// Computes the tangent frames of a mesh on the GPU.
-#[derive(Debug, Clone)]
-pub struct TangentPass {
-    kernel: Kernel,
+pass! {
+    /// Computes the tangent frames of a mesh on the GPU.
+    pub struct TangentPass;
 }
 
 impl TangentPass {
-    /// Compiles the compute pipeline of this pass.
-    ///
-    /// # Errors
-    /// [`GpuError`] for shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job that computes the tangent frames of `mesh`. It writes tangent x, y, z and handedness for each vertex into
     /// `tangents`. The buffer can also serve as a vertex buffer.
     ///
     /// # Errors
-    /// [`InputError`] if `tangents` is shorter than the number of vertices; [`GpuError`] for errors of the device.
+    /// [`InputError`] if `tangents` is shorter than the number of vertices; [`crate::gpu::GpuError`] for errors of the device.
     pub fn prepare(
         &self,
         gpu: &Gpu,

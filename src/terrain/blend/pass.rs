@@ -3,17 +3,16 @@
 use super::Shading;
 use crate::Error;
 use crate::gpu::bindings::terrain::blend as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, Job, Step, Uniform, pass};
 use crate::shared::terrain::blend::MapParams;
 use crate::shared::terrain::light::Light;
 use crate::terrain::config::HEIGHT_ONE;
 use crate::terrain::cover::Cover;
 use crate::terrain::fields::Fields;
 
-/// Draws top-down colour maps of patches.
-#[derive(Debug, Clone)]
-pub struct BlendPass {
-    kernel: Kernel,
+pass! {
+    /// Draws top-down colour maps of patches.
+    pub struct BlendPass;
 }
 
 /// Buffers of a [`BlendPass`] job.
@@ -29,19 +28,11 @@ pub struct BlendBuffers<'a> {
 }
 
 impl BlendPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Uploads the ground cover and prepares a job that draws the colour maps of all windows.
     ///
     /// # Errors
     /// [`crate::InputError`] for a cover or a shading out of bounds, for windows with nothing inside the outermost ring, and for
-    /// `places` or `pixels` that are too short; [`GpuError`].
+    /// `places` or `pixels` that are too short; [`crate::gpu::GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

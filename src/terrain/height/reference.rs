@@ -26,7 +26,7 @@ pub(crate) fn height(
             spans: pair[1],
             spacing: base_spacing >> (level + 1),
             range: config.level_range(level as u32),
-            injected: Injected::new(features, pair[1], base_spacing >> (level + 1), (1, true)),
+            injected: Injected::new(features, pair[1], base_spacing >> (level + 1), 1, true),
         };
         grid = lattice.subdivide(&grid, pair[0]);
         Given::replace(given, config.levels() - level as u32 - 1, pair[1], &mut grid);

@@ -4,7 +4,7 @@ use super::Hydraulic;
 use super::reference::Flow;
 use crate::Error;
 use crate::gpu::bindings::terrain::hydraulic as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, Step, Uniform, pass};
 use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
 
@@ -22,21 +22,12 @@ pub struct HydraulicBuffers<'a> {
     pub other_flows: &'a Buffer<Flow>,
 }
 
-/// Applies hydraulic erosion to windows of heights; see [`Hydraulic`].
-#[derive(Debug, Clone)]
-pub struct HydraulicPass {
-    kernel: Kernel,
+pass! {
+    /// Applies hydraulic erosion to windows of heights; see [`Hydraulic`].
+    pub struct HydraulicPass;
 }
 
 impl HydraulicPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Number of elements that [`HydraulicBuffers::flows`] needs for the given windows.
     pub fn flow_points(windows: &Fields) -> usize {
         windows.points(1)

@@ -3,13 +3,12 @@
 use super::ErosionLimit;
 use crate::Error;
 use crate::gpu::bindings::terrain::limit as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, Job, Step, Uniform, pass};
 use crate::shared::terrain::limit::LimitParams;
 
-/// Cuts regions from eroded heights, and keeps them within a distance of the heights before erosion.
-#[derive(Debug, Clone)]
-pub struct LimitPass {
-    kernel: Kernel,
+pass! {
+    /// Cuts regions from eroded heights, and keeps them within a distance of the heights before erosion.
+    pub struct LimitPass;
 }
 
 /// Buffers of a batch of regions. Heights are in 1/65536 units, and below 2^30 in size.
@@ -37,18 +36,10 @@ pub struct LimitShape {
 }
 
 impl LimitPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job for a batch of regions.
     ///
     /// # Errors
-    /// [`crate::InputError`] for a limit out of bounds and for buffers that are too short; [`GpuError`].
+    /// [`crate::InputError`] for a limit out of bounds and for buffers that are too short; [`crate::gpu::GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -2,7 +2,7 @@
 
 use super::Morph;
 use crate::gpu::bindings::terrain::morph as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, ParamsJob, Uniform, Upload};
+use crate::gpu::{Buffer, Gpu, GpuError, Job, ParamsJob, Uniform, Upload, pass};
 use crate::shared::terrain::morph::MorphParams;
 use crate::{Error, InputError};
 
@@ -17,21 +17,12 @@ pub struct MorphBuffers<'a> {
     pub heights: &'a Buffer<i32>,
 }
 
-/// Blends two height fields at a given time.
-#[derive(Debug, Clone)]
-pub struct HeightMorphPass {
-    kernel: Kernel,
+pass! {
+    /// Blends two height fields at a given time.
+    pub struct HeightMorphPass;
 }
 
 impl HeightMorphPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a blend of all heights of the buffers.
     ///
     /// # Errors

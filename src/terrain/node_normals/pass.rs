@@ -1,16 +1,15 @@
 //! The GPU pass of `kernels/terrain/node_normals.wgsl`.
 
 use crate::gpu::bindings::terrain::node_normals as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, Job, Step, Uniform, pass};
 use crate::shared::terrain::node_normals::NodeNormalsParams;
 use crate::terrain::config::HEIGHT_ONE;
 use crate::terrain::node::{NODE_MARGIN, NodeShape};
 use crate::{Error, InputError};
 
-/// Computes normals of nodes at twice the nodes' resolution.
-#[derive(Debug, Clone)]
-pub struct NodeNormalsPass {
-    kernel: Kernel,
+pass! {
+    /// Computes normals of nodes at twice the nodes' resolution.
+    pub struct NodeNormalsPass;
 }
 
 /// Buffers of a batch of nodes.
@@ -25,18 +24,10 @@ pub struct NodeNormalsBuffers<'a> {
 }
 
 impl NodeNormalsPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job for `count` nodes of one shape. `spacing` is the distance between samples of the regions, in world units.
     ///
     /// # Errors
-    /// [`InputError`] for a shape without finer heights and for buffers that are too short; [`GpuError`].
+    /// [`InputError`] for a shape without finer heights and for buffers that are too short; [`crate::gpu::GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -82,10 +82,10 @@ struct Octave {
 impl Octave {
     fn new(config: &TerrainConfig, index: u32) -> Self {
         let key = octave_key(config.key(), index);
-        let none = ([0; 4], [0; 4]);
-        let words = words(key, none);
+        let none = [0; 4];
+        let words = words(key, none, none);
         let (log2, range) = (config.base_log2() - index, config.level_range(index));
-        Self { index, log2, key, range, cell: (none.0, none.1, words) }
+        Self { index, log2, key, range, cell: (none, none, words) }
     }
 
     /// Gradient noise on the square lattice; with `values`, plus interpolated random values of the lattice points.
@@ -93,7 +93,7 @@ impl Octave {
         let spacing = 1 << self.log2;
         let [x, y] = at.map(|world| world & !(spacing - 1));
         let [right, below] = [x, y].map(|world| world.wrapping_add(spacing));
-        self.draw(([x, right, x, right], [y, y, below, below]));
+        self.draw([x, right, x, right], [y, y, below, below]);
         // Fractions of the cell, Q.20.
         let [u, v] = at.map(|world| ((world & (spacing - 1)) << (20 - self.log2)) as i32);
         let corner = |index: usize| {
@@ -133,7 +133,7 @@ impl Octave {
             let point = |index: usize| [x, y][axis].wrapping_sub(offsets[index.min(2)][axis] as u32);
             std::array::from_fn(point)
         };
-        self.draw((of(0), of(1)));
+        self.draw(of(0), of(1));
         let contribution = |(index, offset): (usize, [i32; 2])| {
             let offset = offset.map(|world| world << (20 - self.log2));
             // Squares in Q.30, of magnitudes in Q.31.
@@ -148,9 +148,9 @@ impl Octave {
     }
 
     /// Draws the random words of four lattice points.
-    fn draw(&mut self, (x, y): ([u32; 4], [u32; 4])) {
+    fn draw(&mut self, x: [u32; 4], y: [u32; 4]) {
         if (self.cell.0, self.cell.1) != (x, y) {
-            self.cell = (x, y, words(self.key, (x, y)));
+            self.cell = (x, y, words(self.key, x, y));
         }
     }
 
@@ -161,7 +161,7 @@ impl Octave {
     }
 }
 
-fn words(key: [u32; 2], (x, y): ([u32; 4], [u32; 4])) -> [[u32; LANES]; 2] {
+fn words(key: [u32; 2], x: [u32; 4], y: [u32; 4]) -> [[u32; LANES]; 2] {
     let twice = |four: [u32; 4]| std::array::from_fn(|lane| four[lane % 4]);
     let (first, second) = threefry2x32(key, twice(x), twice(y));
     [first, second]

@@ -2,33 +2,24 @@
 
 use crate::Error;
 use crate::gpu::bindings::terrain::normals as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, Job, Step, Uniform, pass};
 use crate::shared::terrain::normals::NormalsParams;
 use crate::terrain::config::{HEIGHT_ONE, check_terrain_scale};
 use crate::terrain::fields::Fields;
 
-/// Computes slopes and unit normals of height fields.
-#[derive(Debug, Clone)]
-pub struct NormalsPass {
-    kernel: Kernel,
+pass! {
+    /// Computes slopes and unit normals of height fields.
+    pub struct NormalsPass;
 }
 
 impl NormalsPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job that computes the slopes and normals of `windows`. Samples are `terrain_scale` world units apart. Both
     /// outputs have one entry per sample of the windows, without each window's outermost ring. `gradients` receives the central
     /// differences in 1/65536 height units. `normals` receives three components per sample: x, up, z.
     ///
     /// # Errors
     /// [`crate::InputError`] for a spacing out of bounds, for windows with nothing inside the outermost ring, and for outputs
-    /// that are too short; [`GpuError`].
+    /// that are too short; [`crate::gpu::GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -2,33 +2,24 @@
 
 use super::{Surround, validate};
 use crate::gpu::bindings::terrain::pad as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, Job, Step, Uniform, pass};
 use crate::shared::terrain::pad::{ELSEWHERE, NONE, PadParams};
 use crate::terrain::fields::{Fields, Place, places};
 use crate::{Error, InputError};
 
-/// Gathers windows of samples from patches and their neighbours.
-#[derive(Debug, Clone)]
-pub struct PadPass {
-    kernel: Kernel,
+pass! {
+    /// Gathers windows of samples from patches and their neighbours.
+    pub struct PadPass;
 }
 
 impl PadPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job that gathers windows, one for each entry of `surrounds`. A window extends `apron` samples beyond its patch
     /// on every side. The job reads the patches from `parts`, where they are stored one after the other, and writes `windows`.
     /// Indices in `surrounds` count patches across all parts.
     ///
     /// # Errors
     /// [`InputError`] when the apron is not smaller than a patch, when an entry of `surrounds` lacks the patch in the middle or
-    /// names a patch beyond `parts`, when parts have different widths, or when a buffer is too short; [`GpuError`].
+    /// names a patch beyond `parts`, when parts have different widths, or when a buffer is too short; [`crate::gpu::GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

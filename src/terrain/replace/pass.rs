@@ -2,13 +2,12 @@
 
 use crate::Error;
 use crate::gpu::bindings::terrain::replace as bindings;
-use crate::gpu::{Buffer, Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Buffer, Gpu, Job, Step, Uniform, pass};
 use crate::shared::terrain::replace::ReplaceParams;
 
-/// Replaces heights of regions by given ones.
-#[derive(Debug, Clone)]
-pub struct ReplacePass {
-    kernel: Kernel,
+pass! {
+    /// Replaces heights of regions by given ones.
+    pub struct ReplacePass;
 }
 
 /// Buffers of a batch of regions.
@@ -21,18 +20,10 @@ pub struct ReplaceBuffers<'a> {
 }
 
 impl ReplacePass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares a job for `count` regions of `width` heights along an edge.
     ///
     /// # Errors
-    /// [`crate::InputError`] for buffers that are too short; [`GpuError`].
+    /// [`crate::InputError`] for buffers that are too short; [`crate::gpu::GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

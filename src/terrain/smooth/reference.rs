@@ -29,7 +29,7 @@ pub(crate) fn smooth(
             spacing,
             range: config.level_range(level),
             edge_range: config.edge_range(level),
-            injected: Injected::new(features, pair[1], spacing, (SMOOTH_RIM, true)),
+            injected: Injected::new(features, pair[1], spacing, SMOOTH_RIM, true),
         };
         grid = step.made(&grid);
         Given::replace(given, config.levels() - level - 1, pair[1], &mut grid);

@@ -3,7 +3,7 @@
 use super::Thermal;
 use crate::Error;
 use crate::gpu::bindings::terrain::thermal as bindings;
-use crate::gpu::{Gpu, GpuError, Job, Kernel, Step, Uniform};
+use crate::gpu::{Gpu, Job, Step, Uniform, pass};
 use crate::shared::terrain::thermal::ThermalParams;
 use crate::terrain::config::check_terrain_scale;
 use crate::terrain::fields::Fields;
@@ -18,27 +18,18 @@ pub struct ThermalBuffers<'a> {
     pub other: &'a Fields,
 }
 
-/// Applies thermal erosion to windows of heights; see [`Thermal`].
-#[derive(Debug, Clone)]
-pub struct ThermalPass {
-    kernel: Kernel,
+pass! {
+    /// Applies thermal erosion to windows of heights; see [`Thermal`].
+    pub struct ThermalPass;
 }
 
 impl ThermalPass {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// Shader compilation errors of the driver.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { kernel: bindings::kernel(gpu)? })
-    }
-
     /// Prepares all iterations. They alternate between `windows` and `other`, and each drops the outermost ring of samples. After
     /// an even number of iterations the result is in `windows`, otherwise in `other`.
     ///
     /// # Errors
     /// [`crate::InputError`] for parameters out of bounds, for windows with fewer rings of samples than iterations, and for a
-    /// buffer that is too short; [`GpuError`].
+    /// buffer that is too short; [`crate::gpu::GpuError`].
     pub fn prepare(
         &self,
         gpu: &Gpu,

@@ -16,7 +16,7 @@ use crate::output::say;
 use crate::progress::shown;
 
 /// Width and height of a plot, in pixels.
-const SIZE: (u32, u32) = (800, 500);
+const SIZE: [u32; 2] = [800, 500];
 
 pub fn run(plan: &Plan, is_drawn: bool, context: &Context, out: &Path) -> Result<(), Error> {
     let mut staged = Staged::new(out)?;

@@ -30,5 +30,5 @@ pub fn plot(comparison: &Comparison) -> Result<RgbaImage, InputError> {
         }
     };
     let title = "Error against cost, by angle from the normal (labels: linear steps)";
-    grid(title, &Comparison::ANGLES.map(chart), 2, (1200, 900))
+    grid(title, &Comparison::ANGLES.map(chart), 2, [1200, 900])
 }

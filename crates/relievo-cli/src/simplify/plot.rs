@@ -26,5 +26,5 @@ pub fn plot(comparison: &ReducerComparison) -> Result<RgbaImage, InputError> {
         [chart("root mean square", |level| level.error_rms), chart("largest", |level| level.error_max)];
     let model = Path::new(&comparison.model).file_name().unwrap_or_default().to_string_lossy();
     let title = format!("Distance between {model} and its levels, by reducer");
-    grid(&title, &charts, 2, (1200, 560))
+    grid(&title, &charts, 2, [1200, 560])
 }

@@ -11,7 +11,7 @@ use relievo_lab::plot::{Chart, Series, grid};
 pub const FILES: [&str; 4] = ["frame_rate.png", "whole_frame_rate.png", "interpolations.png", "error.png"];
 
 /// Width and height of a row of two panels, in pixels.
-const ROW: (u32, u32) = (1200, 560);
+const ROW: [u32; 2] = [1200, 560];
 
 /// What A section 13 reports, in frames a second: without level of detail, and with it at the largest distance.
 const THESIS: [f64; 2] = [12.0, 43.6];
@@ -48,7 +48,7 @@ pub fn pictures(
     pictures.push((work, grid(&title("Bones interpolated"), &interpolations, 2, ROW)?));
     let mut panels = charts(&|layout| errors(report, layout, "largest error", |row| row.error.max_pixels));
     panels.extend(charts(&|layout| errors(report, layout, "rms error", |row| row.error.rms_pixels)));
-    pictures.push((error, grid(&title("Error on screen"), &panels, 2, (ROW.0, 2 * ROW.1))?));
+    pictures.push((error, grid(&title("Error on screen"), &panels, 2, [ROW[0], 2 * ROW[1]])?));
     Ok(pictures)
 }
 

@@ -17,7 +17,8 @@ use super::store::Store;
 /// Answers a `GET` or `HEAD` request for a file.
 pub(super) async fn respond(
     resource: &Resource,
-    (method, headers): (&Method, &HeaderMap),
+    method: &Method,
+    headers: &HeaderMap,
     store: &Store,
 ) -> Result<Response<Body>, ServeError> {
     let wants_range = headers.contains_key(header::RANGE);

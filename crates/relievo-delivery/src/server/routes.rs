@@ -79,12 +79,12 @@ async fn found(
     };
     if let Some(resource) = own {
         let resource = site.0.in_memory(&resource).await?;
-        return respond(&resource, (method, headers), site.0.cache.store()).await;
+        return respond(&resource, method, headers, site.0.cache.store()).await;
     }
     match made(site, &path).await? {
         Ok(resource) => {
             let resource = site.0.in_memory(&resource).await?;
-            respond(&resource, (method, headers), site.0.cache.store()).await
+            respond(&resource, method, headers, site.0.cache.store()).await
         }
         Err(refused) => Ok(refused),
     }

@@ -110,7 +110,8 @@ pub(crate) fn selected(only: Option<&str>) -> Result<Vec<&'static Operation>, In
 pub(crate) fn measure<R>(
     bench: &mut Bench<'_>,
     name: impl Into<String>,
-    (count, unit): (usize, &'static str),
+    count: usize,
+    unit: &'static str,
     words: usize,
     record: &dyn Fn(&mut wgpu::CommandEncoder),
     mut reference: impl FnMut() -> R,
@@ -122,5 +123,5 @@ pub(crate) fn measure<R>(
         Contender::job(Backend::Copy, &copied),
         Contender::host(Backend::Reference, || drop(std::hint::black_box(reference()))),
     ];
-    bench.case(name, (count, unit), 4 * words as u64, contenders)
+    bench.case(name, count, unit, 4 * words as u64, contenders)
 }

@@ -125,7 +125,8 @@ impl<'a> Bench<'a> {
     pub(crate) fn case(
         &mut self,
         case: impl Into<String>,
-        (items, item): (usize, &'static str),
+        items: usize,
+        item: &'static str,
         bytes: u64,
         #[cfg_attr(target_arch = "wasm32", expect(unused_mut))] mut contenders: Vec<Contender<'_>>,
     ) -> Result<(), Error> {
@@ -253,11 +254,11 @@ mod tests {
             Contender::recorded(Backend::Gpu, |_| count(&device)),
             Contender::host(Backend::Reference, || count(&host)),
         ];
-        bench.case("both", (1, "item"), 4, contenders).expect("measured");
+        bench.case("both", 1, "item", 4, contenders).expect("measured");
         assert_eq!(host.get(), ROUNDS);
         assert!(device.get() > host.get(), "{} rounds", device.get());
         bench
-            .case("host", (1, "item"), 4, vec![Contender::host(Backend::Reference, || count(&host))])
+            .case("host", 1, "item", 4, vec![Contender::host(Backend::Reference, || count(&host))])
             .expect("measured");
         assert_eq!(host.get(), 2 * ROUNDS);
         let rows = bench.into_rows();

@@ -19,7 +19,7 @@ mod strip;
 const FINER: u32 = 3;
 
 /// The least width and height of a panel, in pixels.
-const LEAST: (u32, u32) = (240, 180);
+const LEAST: [u32; 2] = [240, 180];
 
 /// A series of points, which are joined by lines in their order.
 #[derive(Debug, Clone, Default)]
@@ -73,30 +73,25 @@ impl Chart {
 ///
 /// # Errors
 /// [`InputError`] for 0 columns, and for a size at which nothing could be read.
-pub fn grid(
-    title: &str,
-    charts: &[Chart],
-    columns: usize,
-    size: (u32, u32),
-) -> Result<RgbaImage, InputError> {
+pub fn grid(title: &str, charts: &[Chart], columns: usize, size: [u32; 2]) -> Result<RgbaImage, InputError> {
     if columns == 0 {
         return Err(InputError::new("columns", columns, "must be at least 1"));
     }
     let rows = charts.len().div_ceil(columns).max(1);
-    let least = (LEAST.0 * columns as u32, LEAST.1 * rows as u32);
-    for (field, edge, least) in [("size.0", size.0, least.0), ("size.1", size.1, least.1)] {
+    let least = [LEAST[0] * columns as u32, LEAST[1] * rows as u32];
+    for (field, edge, least) in [("size[0]", size[0], least[0]), ("size[1]", size[1], least[1])] {
         if !(least..=16_384).contains(&edge) {
             return Err(InputError::new(field, edge, format!("must be in {least}..=16384 pixels")));
         }
     }
-    let (width, height) = (size.0 * FINER, size.1 * FINER);
+    let [width, height] = size.map(|edge| edge * FINER);
     let mut pixels = vec![u8::MAX; 3 * width as usize * height as usize];
     let failed = |reason: String| InputError::new("chart", title, reason);
     Picture::new(charts, size)
-        .draw(title, (rows, columns), BitMapBackend::with_buffer(&mut pixels, (width, height)))
+        .draw(title, rows, columns, BitMapBackend::with_buffer(&mut pixels, (width, height)))
         .map_err(|error| failed(error.to_string()))?;
     let fine = RgbImage::from_raw(width, height, pixels).ok_or_else(|| failed("has no pixels".to_owned()))?;
-    let picture = image::imageops::resize(&fine, size.0, size.1, FilterType::Triangle);
+    let picture = image::imageops::resize(&fine, size[0], size[1], FilterType::Triangle);
     Ok(DynamicImage::ImageRgb8(picture).into_rgba8())
 }
 
@@ -111,7 +106,7 @@ mod tests {
         Series::new(name, points.to_vec())
     }
 
-    fn draw(chart: Chart, size: (u32, u32)) -> Result<RgbaImage, InputError> {
+    fn draw(chart: Chart, size: [u32; 2]) -> Result<RgbaImage, InputError> {
         grid("", &[chart], 1, size)
     }
 
@@ -135,7 +130,7 @@ mod tests {
             let frame = series("", &[(0.0, 0.0), (10.0, 100.0)]);
             let chart =
                 Chart { series: vec![frame, series("", &[]), series("p", &[(x, y)])], ..Chart::default() };
-            let image = draw(chart, (600, 400)).expect("a chart");
+            let image = draw(chart, [600, 400]).expect("a chart");
             // The last rows of the picture are left out: the legend's mark is there.
             let (x, y, pixels) = middle(&image, COLORS[1], 0..370);
             assert!(pixels > 20, "no mark at {x}, {y}");
@@ -159,7 +154,7 @@ mod tests {
             let frame = series("f", &[(1.0, 0.0), (1.0, 0.01), (1.0, 1.0)]);
             let chart =
                 Chart { log_y: true, series: vec![frame, series("p", &[(2.0, y)])], ..Chart::default() };
-            middle(&draw(chart, (1200, 900)).expect("a chart"), COLORS[1], 0..850)
+            middle(&draw(chart, [1200, 900]).expect("a chart"), COLORS[1], 0..850)
         };
         let [zero, low, tenth, one] = [0.0, 0.01, 0.1, 1.0].map(at);
         assert!((low.1 - tenth.1 - (tenth.1 - one.1)).abs() < 1.5, "{low:?} {tenth:?} {one:?}");
@@ -171,7 +166,7 @@ mod tests {
     fn every_series_has_a_filled_mark_in_the_legend() {
         let names = ["a", "b", "c", "d", "e", "f", "g", "h"];
         let series = names.map(|name| series(name, &[(1.0, 1.0)])).to_vec();
-        let image = draw(Chart { series, ..Chart::default() }, (900, 400)).expect("a chart");
+        let image = draw(Chart { series, ..Chart::default() }, [900, 400]).expect("a chart");
         for (color, name) in COLORS.into_iter().zip(names) {
             let pixels = middle(&image, color, 375..400).2;
             assert!((45..150).contains(&pixels), "{pixels} pixels of series {name}");
@@ -184,7 +179,7 @@ mod tests {
             series: names.iter().map(|name| series(name, &[(1.0, 1.0)])).collect(),
             ..Chart::default()
         };
-        let image = grid("title", &[chart(&["a"]), chart(&["b"])], 2, (800, 400)).expect("charts");
+        let image = grid("title", &[chart(&["a"]), chart(&["b"])], 2, [800, 400]).expect("charts");
         assert_eq!(image.dimensions(), (800, 400));
         let [a, b] = [0, 1].map(|index| middle(&image, COLORS[index], 0..365));
         assert!((a.1 - b.1).abs() < 1.0 && (b.0 - a.0 - 400.0).abs() < 2.0, "{a:?} {b:?}");
@@ -192,13 +187,13 @@ mod tests {
 
     #[test]
     fn what_cannot_be_drawn_is_refused_and_nothing_is_drawn_as_nothing() {
-        assert_eq!(draw(Chart::default(), (100, 900)).expect_err("refused").path, "size.0");
-        assert_eq!(draw(Chart::default(), (1200, 1 << 20)).expect_err("refused").path, "size.1");
-        assert_eq!(grid("", &[], 0, (800, 600)).expect_err("refused").path, "columns");
+        assert_eq!(draw(Chart::default(), [100, 900]).expect_err("refused").path, "size[0]");
+        assert_eq!(draw(Chart::default(), [1200, 1 << 20]).expect_err("refused").path, "size[1]");
+        assert_eq!(grid("", &[], 0, [800, 600]).expect_err("refused").path, "columns");
         let odd = series("odd", &[(f64::NAN, 1.0), (1.0, f64::INFINITY), (-1.0, 2.0)]);
         for series in [vec![], vec![odd]] {
             let chart = Chart { log_x: true, series, ..Chart::default() };
-            assert!(draw(chart, (300, 200)).is_ok());
+            assert!(draw(chart, [300, 200]).is_ok());
         }
     }
 
@@ -236,7 +231,7 @@ mod tests {
             }
         };
         let charts = [0.0, 30.0, 60.0, 80.0].map(panel);
-        let image = grid("Error against cost, by angle from the normal", &charts, 2, (1200, 900));
+        let image = grid("Error against cost, by angle from the normal", &charts, 2, [1200, 900]);
         let image = image.expect("charts");
         for color in COLORS.into_iter().take(methods.len()) {
             assert!(middle(&image, color, 0..900).2 > 100, "{color:?} is not there");

@@ -49,7 +49,7 @@ pub struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    pub fn new(charts: &'a [Chart], size: (u32, u32)) -> Self {
+    pub fn new(charts: &'a [Chart], size: [u32; 2]) -> Self {
         register();
         let mut names: Vec<&str> = Vec::new();
         for series in charts.iter().flat_map(|chart| &chart.series) {
@@ -57,11 +57,11 @@ impl<'a> Picture<'a> {
                 names.push(&series.name);
             }
         }
-        let text = (size.0.min(size.1) / 60).clamp(12, 22) * FINER;
+        let text = (size[0].min(size[1]) / 60).clamp(12, 22) * FINER;
         Self { charts, names, axes: Chart::axes(charts), text: text as i32 }
     }
 
-    pub fn draw(&self, title: &str, panels: (usize, usize), backend: BitMapBackend<'_>) -> Drawn {
+    pub fn draw(&self, title: &str, rows: usize, columns: usize, backend: BitMapBackend<'_>) -> Drawn {
         let area = backend.into_drawing_area();
         let (width, height) = area.dim_in_pixel();
         let top = if title.is_empty() { 0 } else { 2 * self.text };
@@ -70,12 +70,12 @@ impl<'a> Picture<'a> {
         let legend = self.legend(&area, width as i32)?;
         let (upper, lower) = area.split_vertically(height as i32 - 2 * self.text * legend.len() as i32);
         let (_, middle) = upper.split_vertically(top);
-        for (chart, panel) in self.charts.iter().zip(middle.split_evenly(panels)) {
+        for (chart, panel) in self.charts.iter().zip(middle.split_evenly((rows, columns))) {
             self.panel(chart, &panel, &area)?;
         }
         for (line, entries) in legend.iter().enumerate() {
             for (index, left) in entries {
-                self.entry(*index, (*left, 2 * self.text * line as i32 + self.text * 3 / 4), &lower)?;
+                self.entry(*index, *left, 2 * self.text * line as i32 + self.text * 3 / 4, &lower)?;
             }
         }
         Ok(area.present()?)
@@ -104,10 +104,10 @@ impl<'a> Picture<'a> {
         Ok(lines)
     }
 
-    fn entry(&self, index: usize, (x, y): (i32, i32), area: &Area<'_>) -> Drawn {
+    fn entry(&self, index: usize, x: i32, y: i32, area: &Area<'_>) -> Drawn {
         let middle = x + self.text;
         area.draw(&PathElement::new([(x, y), (middle + self.text, y)], stroke(index)))?;
-        self.mark(index, true, (middle, y), area)?;
+        self.mark(index, true, middle, y, area)?;
         let position = (middle + self.text * 3 / 2, y);
         Ok(area.draw(&Text::new(self.names[index], position, self.style(1.0, HPos::Left, INK)))?)
     }
@@ -139,8 +139,8 @@ impl<'a> Picture<'a> {
         for series in &chart.series {
             for point in &series.points {
                 let filled = !x.is_zero(point.0) && !y.is_zero(point.1);
-                if let Some(position) = pixel(*point) {
-                    self.mark(self.index(&series.name), filled, position, whole)?;
+                if let Some((x, y)) = pixel(*point) {
+                    self.mark(self.index(&series.name), filled, x, y, whole)?;
                 }
             }
         }
@@ -163,7 +163,7 @@ impl<'a> Picture<'a> {
 
     /// Draws the mark of a series around a pixel; each series has its own shape and colour. Hollow marks are
     /// white inside.
-    fn mark(&self, index: usize, filled: bool, (x, y): (i32, i32), area: &Area<'_>) -> Drawn {
+    fn mark(&self, index: usize, filled: bool, x: i32, y: i32, area: &Area<'_>) -> Drawn {
         let (sides, turn) = SHAPES[index % SHAPES.len()];
         // Triangles are smaller than other shapes in the same circle.
         let radius = f64::from(self.text) * if sides == 3 { 0.58 } else { 0.46 };

@@ -249,16 +249,15 @@ impl Steps for Contraction {
         }
     }
 
-    fn reduced(&self, reached: (f32, Stopped)) -> Reduced {
+    fn reduced(&self, error: f32, stopped: Stopped) -> Reduced {
         let (mut corners, mut triangles) = (Vec::new(), Vec::new());
         for (triangle, origin) in self.solid.mesh.all() {
             corners.extend(triangle);
             triangles.push(origin);
         }
-        let attributes = (self.attributes.as_slice(), self.stride);
         let position = |corner: &Corner| (corner.vertex, self.positions[corner.point as usize]);
         let placed: Vec<_> = corners.iter().map(position).collect();
-        Reduced::placed(&placed, attributes, triangles, reached)
+        Reduced::placed(&placed, &self.attributes, self.stride, triangles, error, stopped)
     }
 }
 

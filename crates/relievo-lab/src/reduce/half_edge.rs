@@ -40,5 +40,5 @@ fn level(surface: &Surface<'_>, simplified: &Simplified, limit: &Limits) -> Redu
             why => why,
         },
     };
-    Reduced::of_vertices(surface, &corners, triangles, (error, stopped))
+    Reduced::of_vertices(surface, &corners, triangles, error, stopped)
 }

@@ -133,7 +133,7 @@ impl<'a> Graded<'a> {
             corners.extend([0, 1, 2].map(|at| self.wedge(&wedges[centers[at] as usize], vertices[at])));
             triangles.push(triangle);
         }
-        Reduced::of_vertices(&self.surface, &corners, triangles, (cells.error, stopped))
+        Reduced::of_vertices(&self.surface, &corners, triangles, cells.error, stopped)
     }
 
     /// Of some wedges the one whose attributes are nearest to those of a vertex; of several the lowest.

@@ -44,12 +44,13 @@ impl Reduced {
         surface: &Surface<'_>,
         corners: &[u32],
         triangles: Vec<u32>,
-        (error, stopped): (f32, Stopped),
+        error: f32,
+        stopped: Stopped,
     ) -> Self {
         let (vertices, indices) = compacted(corners);
         let poses = surface.poses.iter().map(|pose| vertices.iter().map(|at| pose[*at as usize]).collect());
         let (poses, stride) = (poses.collect(), surface.stride);
-        let attributes = attributes_of((surface.attributes, stride), &vertices);
+        let attributes = attributes_of(surface.attributes, stride, &vertices);
         Self { poses, attributes, stride, indices, vertices, triangles, error, stopped }
     }
 
@@ -57,9 +58,11 @@ impl Reduced {
     /// triangle with their positions in the only pose. A vertex has one position, and its own attributes of `stride` numbers.
     pub(super) fn placed(
         corners: &[(u32, [f32; 3])],
-        (attributes, stride): (&[f32], usize),
+        attributes: &[f32],
+        stride: usize,
         triangles: Vec<u32>,
-        (error, stopped): (f32, Stopped),
+        error: f32,
+        stopped: Stopped,
     ) -> Self {
         let of: Vec<u32> = corners.iter().map(|(vertex, _)| *vertex).collect();
         let (vertices, indices) = compacted(&of);
@@ -67,13 +70,13 @@ impl Reduced {
         for (index, (_, position)) in indices.iter().zip(corners) {
             positions[*index as usize] = *position;
         }
-        let attributes = attributes_of((attributes, stride), &vertices);
+        let attributes = attributes_of(attributes, stride, &vertices);
         Self { poses: vec![positions], attributes, stride, indices, vertices, triangles, error, stopped }
     }
 }
 
 /// The numbers of some vertices.
-fn attributes_of((attributes, stride): (&[f32], usize), vertices: &[u32]) -> Vec<f32> {
+fn attributes_of(attributes: &[f32], stride: usize, vertices: &[u32]) -> Vec<f32> {
     vertices.iter().flat_map(|at| &attributes[*at as usize * stride..][..stride]).copied().collect()
 }
 

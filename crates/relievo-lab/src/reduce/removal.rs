@@ -215,12 +215,12 @@ impl Steps for Removal<'_> {
         }
     }
 
-    fn reduced(&self, reached: (f32, Stopped)) -> Reduced {
+    fn reduced(&self, error: f32, stopped: Stopped) -> Reduced {
         let (mut corners, mut triangles) = (Vec::new(), Vec::new());
         for (triangle, origin) in self.solid.mesh.all() {
             corners.extend(triangle.map(|corner| corner.vertex));
             triangles.push(origin);
         }
-        Reduced::of_vertices(&self.surface, &corners, triangles, reached)
+        Reduced::of_vertices(&self.surface, &corners, triangles, error, stopped)
     }
 }

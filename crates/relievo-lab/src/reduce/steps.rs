@@ -42,7 +42,7 @@ pub(super) trait Steps {
     fn take(&mut self, step: Self::Step);
 
     /// The mesh as it is, with the error that was reached, and why it stopped.
-    fn reduced(&self, reached: (f32, Stopped)) -> Reduced;
+    fn reduced(&self, error: f32, stopped: Stopped) -> Reduced;
 }
 
 /// Takes steps until every limit is reached, and returns the mesh at each of them. The error is the largest of all steps.
@@ -62,7 +62,7 @@ pub(super) fn run<S: Steps>(mut steps: S, limits: &[Limits]) -> Vec<Reduced> {
                 Some(next) if next > limits[*at].error => Stopped::Error,
                 Some(_) => return true,
             };
-            results[*at] = Some(steps.reduced((error, stopped)));
+            results[*at] = Some(steps.reduced(error, stopped));
             false
         });
         if let (Some(step), Some(next), false) = (step, next, open.is_empty()) {

@@ -79,8 +79,8 @@ fn reduced(surface: &Surface<'_>, tried: &Tried, stopped: Stopped) -> Reduced {
         (representative.source, representative.position)
     };
     let corners: Vec<_> = clustered.indices.iter().map(corner).collect();
-    let attributes = (surface.attributes, surface.stride);
-    Reduced::placed(&corners, attributes, clustered.triangles.clone(), (tried.error, stopped))
+    let (attributes, triangles) = (surface.attributes, clustered.triangles.clone());
+    Reduced::placed(&corners, attributes, surface.stride, triangles, tried.error, stopped)
 }
 
 /// The mesh as it is, without triangles that have two corners in one place.
@@ -95,5 +95,5 @@ fn whole(surface: &Surface<'_>, limit: &Limits) -> Reduced {
         }
     }
     let stopped = if triangles.len() <= limit.triangles { Stopped::Triangles } else { Stopped::Error };
-    Reduced::of_vertices(surface, &corners, triangles, (0.0, stopped))
+    Reduced::of_vertices(surface, &corners, triangles, 0.0, stopped)
 }

@@ -64,15 +64,17 @@ pub fn square(
     plane: f32,
 ) -> MeshDrawable {
     let mesh = SurfaceMesh::square(TILES);
-    mesh_of(gpu, layouts, (maps, options), (&mesh, 1.0 / TILES), plane)
+    mesh_of(gpu, layouts, maps, options, &mesh, 1.0 / TILES, plane)
 }
 
 /// A mesh with a relief. One uv unit has the given length in model units.
 fn mesh_of(
     gpu: &Gpu,
     layouts: &SceneLayouts,
-    (maps, options): (&Maps, ReliefOptions),
-    (square, world): (&SurfaceMesh, f32),
+    maps: &Maps,
+    options: ReliefOptions,
+    square: &SurfaceMesh,
+    world: f32,
     plane: f32,
 ) -> MeshDrawable {
     let vertex = |vertex: &crate::surface::SurfaceVertex| Vertex {
@@ -138,7 +140,7 @@ fn a_scaled_instance_is_a_larger_mesh() {
         let maps = Maps::new(&gpu, method);
         let options = ReliefOptions { method, shadow, silhouette: depth, depth, ..ReliefOptions::default() };
         let seen = view(Vec3::new(0.3, 0.9, 1.6), false);
-        let large = mesh_of(&gpu, &layouts, (&maps, options), (&placed(scale), scale / TILES), 1.0);
+        let large = mesh_of(&gpu, &layouts, &maps, options, &placed(scale), scale / TILES, 1.0);
         let stage = Stage::new(&gpu, &layouts, seen, &[AFFINE_IDENTITY], &[[0, 6]]);
         let expected = drawn(&gpu, &format, &large, &stage, None, &[Layer::Color]);
         let square = square(&gpu, &layouts, &maps, options, 1.0);

@@ -111,7 +111,7 @@ impl<'a> Document<'a> {
         let mut values = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                self.decoded(path, (view, offset), shape, decode)?
+                self.decoded(path, view, offset, shape, decode)?
             }
             None => vec![T::default(); shape.count * shape.components],
         };
@@ -146,12 +146,13 @@ impl<'a> Document<'a> {
             InputError::new(format!("{path}.count"), count.0, bound)
         })?;
         let component = indices.component_type.unwrap().0;
-        let place = (indices.buffer_view, indices.byte_offset.0);
+        let path_of = |field: &str| format!("{path}.{field}");
+        let (view, offset) = (indices.buffer_view, indices.byte_offset.0);
         let of_indices = Shape { component, components: 1, count, is_normalized: false };
         let indices =
-            self.decoded(&format!("{path}.indices"), place, of_indices, |_, number| number as usize)?;
-        let place = (new.buffer_view, new.byte_offset.0);
-        let new = self.decoded(&format!("{path}.values"), place, Shape { count, ..shape }, decode)?;
+            self.decoded(&path_of("indices"), view, offset, of_indices, |_, number| number as usize)?;
+        let (view, offset) = (new.buffer_view, new.byte_offset.0);
+        let new = self.decoded(&path_of("values"), view, offset, Shape { count, ..shape }, decode)?;
         for (at, (index, new)) in indices.into_iter().zip(new.chunks_exact(shape.components)).enumerate() {
             if index >= shape.count {
                 let bound = format!("must be below {}, the accessor's count", shape.count);
@@ -167,7 +168,8 @@ impl<'a> Document<'a> {
     fn decoded<T>(
         &self,
         path: &str,
-        (view, offset): (Index<buffer::View>, u64),
+        view: Index<buffer::View>,
+        offset: u64,
         shape: Shape,
         decode: Decode<T>,
     ) -> Result<Vec<T>, InputError> {

@@ -1,11 +1,10 @@
 //! Decompresses buffer views that meshoptimizer compressed (`EXT_meshopt_compression` and `KHR_meshopt_compression`), with the
-//! crate meshoptimizer-rs.
+//! crate meshopt-pure.
 
-use meshoptimizer_rs::codec::{
-    decode_filter_color, decode_filter_exp, decode_filter_oct, decode_filter_quat, decode_index_buffer,
-    decode_index_sequence, decode_vertex_buffer,
+use meshoptimizer::{
+    Error, decode_filter_color, decode_filter_exp, decode_filter_oct, decode_filter_quat,
+    decode_index_buffer, decode_index_sequence, decode_vertex_buffer,
 };
-use meshoptimizer_rs::{Error, Workspace};
 use serde::Deserialize;
 
 use super::budget::BYTES_AN_ELEMENT;
@@ -68,7 +67,6 @@ impl Meshopt {
             document.slice(&format!("{path}.byteLength"), buffer, self.byte_offset, self.byte_length)?;
         let size = self.count.saturating_mul(self.byte_stride);
         document.budget.spend(&format!("{path}.count"), size.div_ceil(BYTES_AN_ELEMENT))?;
-        // meshoptimizer-rs checks that sizes and strides fit together.
         self.decode(bytes).map_err(|error| {
             let value = format!("[{} bytes]", bytes.len());
             let bound =
@@ -79,21 +77,39 @@ impl Meshopt {
 
     fn decode(&self, bytes: &[u8]) -> Result<Vec<u8>, Error> {
         let (count, stride) = (self.count, self.byte_stride);
-        let mut space = Workspace::default();
-        let decode = match self.mode {
-            Mode::Attributes => decode_vertex_buffer,
-            Mode::Triangles => decode_index_buffer,
-            Mode::Indices => decode_index_sequence,
+        let mut data = match self.mode {
+            Mode::Attributes => {
+                let mut data = vec![0; count * stride];
+                decode_vertex_buffer(&mut data, count, stride, bytes, bytes.len())?;
+                data
+            }
+            Mode::Triangles => self.indices(bytes, decode_index_buffer)?,
+            Mode::Indices => self.indices(bytes, decode_index_sequence)?,
         };
-        let mut data = decode(count, stride, bytes, &mut space)?;
-        let filter = match self.filter {
-            Filter::None => return Ok(data),
-            Filter::Octahedral => decode_filter_oct,
-            Filter::Quaternion => decode_filter_quat,
-            Filter::Exponential => decode_filter_exp,
-            Filter::Color => decode_filter_color,
-        };
-        filter(&mut data, count, stride, &mut space)?;
+        match self.filter {
+            Filter::None => {}
+            Filter::Octahedral => decode_filter_oct(&mut data, count, stride)?,
+            Filter::Quaternion => decode_filter_quat(&mut data, count, stride)?,
+            Filter::Exponential => decode_filter_exp(&mut data, count, stride)?,
+            Filter::Color => decode_filter_color(&mut data, count, stride)?,
+        }
         Ok(data)
     }
+
+    /// The bytes of decompressed indices.
+    fn indices(&self, bytes: &[u8], decode: DecodeIndices) -> Result<Vec<u8>, Error> {
+        if ![2, 4].contains(&self.byte_stride) {
+            return Err(Error::InvalidArgument("indices have 2 or 4 bytes"));
+        }
+        let mut indices = vec![0; self.count];
+        decode(&mut indices, self.count, bytes, bytes.len())?;
+        // The lower bytes come first, so an index of two bytes is the first half of one of four.
+        Ok(indices
+            .into_iter()
+            .flat_map(|index| index.to_le_bytes().into_iter().take(self.byte_stride))
+            .collect())
+    }
 }
+
+/// Decodes compressed indices: output, number of indices, compressed bytes, number of these bytes.
+type DecodeIndices = fn(&mut [u32], usize, &[u8], usize) -> Result<(), Error>;

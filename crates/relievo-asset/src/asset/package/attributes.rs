@@ -197,7 +197,8 @@ impl Attributes {
         coder: &mut impl Coder,
         contexts: &mut AttributeContexts,
         room: &mut Room,
-        (surface, added): (&Surface, &Added),
+        surface: &Surface,
+        added: &Added,
         written: Option<Written<'_>>,
     ) -> Result<(), InputError> {
         let around = Around::new(&surface.triangles, &added.points, &added.edges);
@@ -219,7 +220,7 @@ impl Attributes {
                 wanted(written, vertex, grid, |mesh| &mesh.colors)
             })?;
         }
-        self.code_targets(coder, contexts, room, (surface, &around), written)
+        self.code_targets(coder, contexts, room, surface, &around, written)
     }
 
     fn code_positions(
@@ -486,7 +487,8 @@ impl Attributes {
         coder: &mut impl Coder,
         contexts: &mut AttributeContexts,
         room: &mut Room,
-        (surface, around): (&Surface, &Around<'_>),
+        surface: &Surface,
+        around: &Around<'_>,
         written: Option<Written<'_>>,
     ) -> Result<(), InputError> {
         Room::take(&mut room.tests, self.targets.len().saturating_mul(around.range.len()))?;

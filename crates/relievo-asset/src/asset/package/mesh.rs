@@ -104,7 +104,7 @@ impl<'a> LeveledMesh<'a> {
                 _ => None,
             };
             let contexts = &mut contexts.attributes;
-            self.attributes.level(coder, contexts, room, (&self.surface, &added), written)?;
+            self.attributes.level(coder, contexts, room, &self.surface, &added, written)?;
             self.levels.push(self.surface.indices());
         }
         Ok(())

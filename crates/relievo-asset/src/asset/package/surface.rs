@@ -311,7 +311,7 @@ impl Surface {
         let added = truth.as_ref().map_or(0, |truth| truth.triangles.len() - kept);
         let added = usize::try_from(contexts.counts.code(coder, added as i64)?).map_err(|_| damaged())?;
         Room::take(&mut room.triangles, added)?;
-        self.grow(coder, contexts, (room, added), &coarse, truth)?;
+        self.grow(coder, contexts, room, added, &coarse, truth)?;
         let first_added = 3 * kept as u32;
         let edges = coarse.changed.iter().map(|changed| changed.edge);
         let edges: Vec<u32> = edges.chain(first_added..3 * self.triangles.len() as u32).collect();
@@ -461,7 +461,8 @@ impl Surface {
         &mut self,
         coder: &mut impl Coder,
         contexts: &mut SurfaceContexts,
-        (room, mut left): (&mut Room, usize),
+        room: &mut Room,
+        mut left: usize,
         coarse: &Coarse,
         truth: &mut Option<Truth<'_>>,
     ) -> Result<(), InputError> {

@@ -124,11 +124,11 @@ impl Parts {
             for &point in own.into_iter().flatten() {
                 let from = points.position(point, pose);
                 let known = hint.map_or(f64::INFINITY, |part| {
-                    self.nearest_in(points, topology, part, (pose, from), f64::INFINITY)
+                    self.nearest_in(points, topology, part, pose, from, f64::INFINITY)
                 });
                 // If this point is nearer to the other parts than an earlier point, it does not change the maximum.
                 if known > worst {
-                    let (nearest, part) = self.nearest(points, topology, (pose, from), (known, hint));
+                    let (nearest, part) = self.nearest(points, topology, pose, from, known, hint);
                     (worst, hint) = (worst.max(nearest), part);
                 }
                 if worst > enough {
@@ -140,19 +140,21 @@ impl Parts {
         worst
     }
 
-    /// Squared distance from `from` to the nearest triangle of any remaining part, and the index of this part. `known`
-    /// has the same two values for a part that is already measured, or infinity and `None`.
+    /// Squared distance from `from` to the nearest triangle of any remaining part, and the index of this part. `best`
+    /// and `of` are the same two values for a part that is already measured, or infinity and `None`.
     fn nearest(
         &mut self,
         points: &Points,
         topology: &mut Topology,
-        (pose, from): (usize, DVec3),
-        known: (f64, Option<u32>),
+        pose: usize,
+        from: DVec3,
+        mut best: f64,
+        mut of: Option<u32>,
     ) -> (f64, Option<u32>) {
-        let ((mut best, mut of), mut open) = (known, std::mem::take(&mut self.open));
+        let mut open = std::mem::take(&mut self.open);
         self.trees[pose].start(from, &mut open);
         while let Some(part) = self.trees[pose].next(from, best, &mut open) {
-            let found = self.nearest_in(points, topology, part, (pose, from), best);
+            let found = self.nearest_in(points, topology, part, pose, from, best);
             if found < best {
                 (best, of) = (found, Some(part));
             }
@@ -167,7 +169,8 @@ impl Parts {
         points: &Points,
         topology: &mut Topology,
         part: u32,
-        (pose, from): (usize, DVec3),
+        pose: usize,
+        from: DVec3,
         best: f64,
     ) -> f64 {
         let [low, high] = self.all[part as usize].boxes[pose];

@@ -115,7 +115,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // The kernel reads the model matrices and writes 8 words per instance.
         let words = 12 * scene.pairs() + 8 * count;
         let name = format!("{count} × 153");
-        measure(bench, name, (count, "instance"), words, &|encoder| job.record(encoder), || {
+        measure(bench, name, count, "instance", words, &|encoder| job.record(encoder), || {
             bounds(&model_matrices, &bone_radii)
         })?;
     }

@@ -55,7 +55,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let pairs = (bones * count) as u32;
         for (frame, most) in [pairs, pairs / 2, 0, pairs / 3 + 1, pairs - 1, u32::MAX].into_iter().enumerate()
         {
-            let (mut lods, clip_clocks) = random_state(&mut draw, (&set, &order), count, frame == 0);
+            let (mut lods, clip_clocks) = random_state(&mut draw, &set, &order, count, frame == 0);
             let weight = |draw: &mut Draw| draw.word() >> (16 + draw.word() % 17).min(31);
             lods.iter_mut()
                 .for_each(|lod| lod.weight = if frame % 2 == 0 { 65535 } else { weight(&mut draw) });
@@ -110,7 +110,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             encoder.copy_buffer_to_buffer(before.raw(), 0, state.sampled.raw(), 0, before.bytes());
             job.record(encoder);
         };
-        measure(bench, name, (pairs, "bone"), 6 * pairs, &record, || {
+        measure(bench, name, pairs, "bone", 6 * pairs, &record, || {
             sampled.fill(0);
             budget(&table, most, &lods, &clip_clocks, &mut sampled)
         })?;

@@ -119,7 +119,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // The kernel reads 12 words and writes 6 per instance.
         let (lods, mut history) = (vec![Lod::FULL; count], vec![[0; 4]; count]);
         let name = format!("{count} instances");
-        measure(bench, name, (count, "instance"), 18 * count, &|encoder| job.record(encoder), || {
+        measure(bench, name, count, "instance", 18 * count, &|encoder| job.record(encoder), || {
             let (set, instances) = (&scene.set, &scene.instances);
             let played = PlayedCrowd { set, instances, layers: &[], lods: &lods, elapsed: 0.4, ahead: 0.0 };
             clip_clocks(&played, &mut history)

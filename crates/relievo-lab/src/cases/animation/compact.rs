@@ -161,7 +161,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             // The kernel reads bits twice and writes them once, and writes a pair and its slot.
             let words = (3 * bits.bits.len() + 2 * chosen as usize) / 2;
             let name = format!("{count} × 153, {fraction}");
-            measure(bench, name, (scene.pairs(), "bone"), 2 * words, &|encoder| job.record(encoder), || {
+            measure(bench, name, scene.pairs(), "bone", 2 * words, &|encoder| job.record(encoder), || {
                 compact(&order, &bits)
             })?;
         }

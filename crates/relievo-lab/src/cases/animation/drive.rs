@@ -92,7 +92,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let mut bits = vec![0; count * order.words()];
         let mut ahead = bits.clone();
         let name = format!("{count} × 153");
-        measure(bench, name, (8 * count, "bone"), 2 * words, &|encoder| job.record(encoder), || {
+        measure(bench, name, 8 * count, "bone", 2 * words, &|encoder| job.record(encoder), || {
             drive(&driven, order.words(), &hidden, [&mut bits, &mut ahead]);
             std::hint::black_box(&mut bits);
         })?;

@@ -87,7 +87,7 @@ async fn add(
     let mut sampled = vec![0; crowd.pairs()];
     sums.buffer.write(gpu, &sampled)?;
     for (number, ticks) in [0, 70_000, u32::MAX - 1000, 800].into_iter().enumerate() {
-        let (lods, clip_clocks) = random_state(&mut draw, (set, order), count, number == 0);
+        let (lods, clip_clocks) = random_state(&mut draw, set, order, count, number == 0);
         state.write_lods(gpu, &lods)?;
         state.clip_clocks.write(gpu, &clip_clocks)?;
         let frame = Frame {
@@ -112,7 +112,8 @@ async fn add(
 /// are forced.
 pub(crate) fn random_state(
     draw: &mut Draw,
-    (set, order): (&ClipSet, &Order),
+    set: &ClipSet,
+    order: &Order,
     count: usize,
     is_first: bool,
 ) -> (Vec<Lod>, Vec<ClipClock>) {
@@ -190,7 +191,7 @@ fn case(bench: &mut Bench<'_>, scene: &Scene, mode: &Gate) -> Result<(), Error> 
         }
         job.record(encoder);
     };
-    measure(bench, name, (pairs, "bone"), 2 * words.max(1), &record, || {
+    measure(bench, name, pairs, "bone", 2 * words.max(1), &record, || {
         sampled.fill(0);
         gate(mode, &frame, &lods, &clip_clocks, &mut sampled)
     })

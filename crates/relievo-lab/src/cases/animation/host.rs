@@ -36,7 +36,7 @@ fn upload(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
         Contender::host(Backend::Reference, || black_box(&mut there).copy_from_slice(&scene.instances)),
     ];
     let case = format!("{count} × 153, upload of instances");
-    bench.case(case, (count, "instance"), 32 * count as u64, contenders)
+    bench.case(case, count, "instance", 32 * count as u64, contenders)
 }
 
 fn dispatch(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
@@ -54,7 +54,7 @@ fn dispatch(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
         Contender::host(Backend::PlainSoa, || plain.compute(scene)),
     ];
     let case = format!("{} × 153, dispatch of a frame", scene.instances.len());
-    bench.case(case, (pairs, "bone"), 216 * pairs as u64, contenders)
+    bench.case(case, pairs, "bone", 216 * pairs as u64, contenders)
 }
 
 fn readback(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
@@ -71,5 +71,5 @@ fn readback(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
         Contender::host(Backend::Reference, || black_box(&mut there).copy_from_slice(black_box(&here))),
     ];
     let case = format!("{} × 153, readback of model matrices", scene.instances.len());
-    bench.case(case, (pairs, "bone"), 96 * pairs as u64, contenders)
+    bench.case(case, pairs, "bone", 96 * pairs as u64, contenders)
 }

@@ -230,7 +230,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // The kernel reads an instance and four times, and writes a cursor: 10 words.
         let mut cursors = vec![KeyframeCursor::default(); count];
         let name = format!("{count} instances");
-        measure(bench, name, (count, "instance"), 10 * count, &|encoder| job.record(encoder), || {
+        measure(bench, name, count, "instance", 10 * count, &|encoder| job.record(encoder), || {
             cursors_into(&scene.set, &scene.instances, MEASURED, black_box(&mut cursors));
         })?;
     }

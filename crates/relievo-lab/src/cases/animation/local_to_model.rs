@@ -200,7 +200,7 @@ fn alone(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
             }
         }),
     ];
-    bench.case(format!("{} × 153", scene.instances.len()), (pairs, "bone"), 88 * pairs as u64, contenders)
+    bench.case(format!("{} × 153", scene.instances.len()), pairs, "bone", 88 * pairs as u64, contenders)
 }
 
 /// A frame: cursors, sampling and concatenation in one submission. On the host, one instance after another.
@@ -214,5 +214,5 @@ fn both(bench: &mut Bench<'_>, scene: &Scene) -> Result<(), Error> {
         Contender::host(Backend::PlainSoa, || plain.compute(scene)),
     ];
     let (case, pairs) = (format!("{} × 153, both with sampling", scene.instances.len()), scene.pairs());
-    bench.case(case, (pairs, "bone"), 216 * pairs as u64, contenders)
+    bench.case(case, pairs, "bone", 216 * pairs as u64, contenders)
 }

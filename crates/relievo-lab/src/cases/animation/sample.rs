@@ -253,7 +253,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
                 }
             }),
         ];
-        bench.case(format!("{count} × 153, 60 keys"), (pairs, "bone"), 128 * pairs as u64, contenders)?;
+        bench.case(format!("{count} × 153, 60 keys"), pairs, "bone", 128 * pairs as u64, contenders)?;
     }
     quarter(bench, &pass)?;
     blended(bench)
@@ -275,7 +275,8 @@ fn quarter(bench: &mut Bench<'_>, pass: &SamplePass) -> Result<(), Error> {
     measure(
         bench,
         "a quarter of 1000 × 153",
-        (chosen.len(), "bone"),
+        chosen.len(),
+        "bone",
         32 * chosen.len(),
         &|encoder| job.record(encoder),
         || reference(&scene, cursors, black_box(&mut locals)),
@@ -297,7 +298,8 @@ fn blended(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         "two clips blended, 1000 × 153",
-        (pairs, "bone"),
+        pairs,
+        "bone",
         50 * pairs,
         &|encoder| job.record(encoder),
         || sample_layers(&scene.set, &scene.instances, &layers, &found, RotationPath::Slerp),

@@ -55,7 +55,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
                 copy(std::hint::black_box(&from), std::hint::black_box(&mut to))
             }),
         ];
-        bench.case(format!("{mebibytes} MiB"), (words, "word"), 8 * words as u64, contenders)?;
+        bench.case(format!("{mebibytes} MiB"), words, "word", 8 * words as u64, contenders)?;
     }
     Ok(())
 }

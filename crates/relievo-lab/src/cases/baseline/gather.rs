@@ -97,7 +97,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             gather(&scene.set, &scene.instances, &scene.cursors, black_box(&mut gathered));
         }),
     ];
-    bench.case("1000 × 153, 60 keys", (pairs, "bone"), 128 * pairs as u64, contenders)?;
+    bench.case("1000 × 153, 60 keys", pairs, "bone", 128 * pairs as u64, contenders)?;
     let contenders = vec![
         Contender::job(Backend::Gpu, &keys),
         Contender::job(Backend::Copy, &copied),
@@ -105,5 +105,5 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             gather_keys(&scene.set, KEYS as u32, &scene.cursors, black_box(&mut gathered));
         }),
     ];
-    bench.case("1000 × 153, keys alone", (pairs, "bone"), 128 * pairs as u64, contenders)
+    bench.case("1000 × 153, keys alone", pairs, "bone", 128 * pairs as u64, contenders)
 }

@@ -60,5 +60,5 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             drop(std::hint::black_box(loads(&map, [1024, 1024], 16)));
         }),
     ];
-    bench.case("16 by 1024 × 1024", (16 << 20, "load"), 64 << 20, contenders)
+    bench.case("16 by 1024 × 1024", 16 << 20, "load", 64 << 20, contenders)
 }

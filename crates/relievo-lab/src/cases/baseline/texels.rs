@@ -70,5 +70,5 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
                 .for_each(|_| drop(std::hint::black_box(texels(window, width as usize, &cover, [0; 2]))));
         }),
     ];
-    bench.case("257x257 batch 64, 4 zones", (12 * points, "texel"), 96 * points as u64, contenders)
+    bench.case("257x257 batch 64, 4 zones", 12 * points, "texel", 96 * points as u64, contenders)
 }

@@ -48,5 +48,5 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         Contender::job(Backend::Copy, &copied),
         Contender::host(Backend::Reference, || drop(std::hint::black_box(words([1, 2], size[0], size[1])))),
     ];
-    bench.case(format!("{} × {}", size[0], size[1]), (count, "word"), 4 * count as u64, contenders)
+    bench.case(format!("{} × {}", size[0], size[1]), count, "word", 4 * count as u64, contenders)
 }

@@ -234,7 +234,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // The kernel reads four words and a Lod, and writes a Lod and an InstanceLod.
         let words = 16 * count;
         let name = format!("{count} instances");
-        measure(bench, name, (count, "instance"), words, &|encoder| job.record(encoder), || {
+        measure(bench, name, count, "instance", words, &|encoder| job.record(encoder), || {
             allowed.iter().map(|allowed| assign(&params, &plain(*allowed, 0))).collect::<Vec<_>>()
         })?;
     }

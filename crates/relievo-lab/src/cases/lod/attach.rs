@@ -114,7 +114,8 @@ impl Case {
         gpu: &Gpu,
         pass: &AttachPass,
         view: &SelectView,
-        (placements, kept): (&Buffer<Affine>, &Buffer<KeptBone>),
+        placements: &Buffer<Affine>,
+        kept: &Buffer<KeptBone>,
     ) -> Result<Job, Error> {
         let mut room = self.attachments.clone();
         room.resize(room.len() + ROOM as usize, Attachment { mesh: 0, ..FREE });
@@ -135,7 +136,7 @@ impl Case {
     async fn compared(&self, gpu: &Gpu, view: &SelectView) -> Result<Comparison, Error> {
         let placements = Poisoned::<Affine>::new(gpu, 2 * INSTANCES as usize)?;
         let kept = Buffer::from_slice(gpu, "kept", self.kept.as_flattened())?;
-        let job = self.prepared(gpu, &AttachPass::new(gpu)?, view, (&placements.buffer, &kept))?;
+        let job = self.prepared(gpu, &AttachPass::new(gpu)?, view, &placements.buffer, &kept)?;
         gpu.submit("verify", |encoder| {
             job.record(encoder);
             job.record(encoder);
@@ -279,13 +280,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             kept: Vec::new(),
         };
         let (entries, instances) = ((count + ROOM) as usize, case.instances.len());
-        let outputs =
-            (&Buffer::new(gpu, "placements", 2 * instances)?, &Buffer::new(gpu, "kept", 2 * entries)?);
-        let job = case.prepared(gpu, &pass, &view, outputs)?;
+        let placements = Buffer::new(gpu, "placements", 2 * instances)?;
+        let job = case.prepared(gpu, &pass, &view, &placements, &Buffer::new(gpu, "kept", 2 * entries)?)?;
         // The kernel reads an attachment, a bone, an instance and what it is allowed, and writes three rows.
         let words = (16 + 12 + 24 + 1 + 12) * count as usize;
         let name = format!("{count} meshes");
-        measure(bench, name, (count as usize, "mesh"), words, &|encoder| job.record(encoder), || {
+        measure(bench, name, count as usize, "mesh", words, &|encoder| job.record(encoder), || {
             let Case { params, attachments, instances, allowed, model_matrices, .. } = &case;
             let scene = AttachScene { instances, allowed };
             let of = |of| attached(params, of, view.cell, scene, &local(params, of, model_matrices));

@@ -47,7 +47,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
                 found.buffer.write(gpu, &[last])?;
                 let work = Buffer::<BudgetWork>::new(gpu, "work", 1)?;
                 let stages =
-                    given.iter().map(|given| given.prepared(gpu, &pass, limit, (&found.buffer, &work)));
+                    given.iter().map(|given| given.prepared(gpu, &pass, limit, &found.buffer, &work));
                 let stages = stages.collect::<Result<Vec<_>, Error>>()?;
                 gpu.submit("verify", |encoder| record(encoder, &stages))?;
                 let name = format!("{} instances, {views} views, {part} of them", all.len());
@@ -125,7 +125,8 @@ impl Given {
         gpu: &Gpu,
         pass: &BudgetPass,
         limit: u32,
-        (state, work): (&Buffer<BudgetState>, &Buffer<BudgetWork>),
+        state: &Buffer<BudgetState>,
+        work: &Buffer<BudgetWork>,
     ) -> Result<BudgetStages, Error> {
         let blocks = self.blocks.block_objects.len() as u32;
         let buffers = BudgetBuffers {
@@ -184,12 +185,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let all: Vec<Budgeted<'_>> = given.instances().collect();
         let limit = triangles(&all) / 10;
         let (state, work) = (Buffer::new(gpu, "state", 1)?, Buffer::new(gpu, "work", 1)?);
-        let stages = [given.prepared(gpu, &pass, limit, (&state, &work))?];
+        let stages = [given.prepared(gpu, &pass, limit, &state, &work)?];
         // Three stages read metric and decision of an instance; some levels are added to the histogram.
         let words = 8 * all.len();
         let case = format!("{} instances", all.len());
         let record = |encoder: &mut wgpu::CommandEncoder| record(encoder, &stages);
-        measure(bench, case, (all.len(), "instance"), words, &record, || pressure(&all, limit))?;
+        measure(bench, case, all.len(), "instance", words, &record, || pressure(&all, limit))?;
     }
     Ok(())
 }

@@ -226,7 +226,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // The kernel reads metric, decision and finest level of an instance, writes two decisions and a level, and half a count.
         let words = 6 * count + count / 2;
         let case = format!("{count} instances");
-        measure(bench, case, (count, "instance"), words, &|encoder| job.record(encoder), || {
+        measure(bench, case, count, "instance", words, &|encoder| job.record(encoder), || {
             (0..count).map(|index| given.decided(index, 1.0)).collect::<Vec<_>>()
         })?;
     }

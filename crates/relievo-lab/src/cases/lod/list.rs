@@ -34,8 +34,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let (count, list) = (Poisoned::new(gpu, words)?, Poisoned::new(gpu, blocks.list_words())?);
             let arguments = Poisoned::<SceneDraw>::new(gpu, blocks.draws())?;
             count.buffer.write(gpu, &blocks.counts(&decisions))?;
-            let outputs = (&count.buffer, &list.buffer, &arguments.buffer);
-            let job = prepared(gpu, &pass, &blocks, &decisions, outputs)?;
+            let (counts, lists, draws) = (&count.buffer, &list.buffer, &arguments.buffer);
+            let job = prepared(gpu, &pass, &blocks, &decisions, counts, lists, draws)?;
             gpu.submit("verify", |encoder| job.record(encoder))?;
             let name = format!("{} blocks, {kind}", blocks.block_objects.len());
             let expected = Written::expected(&blocks, &decisions);
@@ -89,7 +89,9 @@ fn prepared(
     pass: &ListPass,
     blocks: &Blocks,
     decisions: &[u32],
-    (counts, lists, arguments): (&Buffer<u32>, &Buffer<u32>, &Buffer<SceneDraw>),
+    counts: &Buffer<u32>,
+    lists: &Buffer<u32>,
+    arguments: &Buffer<SceneDraw>,
 ) -> Result<Job, Error> {
     let buffers = ListBuffers {
         objects: &Buffer::from_slice(gpu, "objects", &blocks.objects)?,
@@ -161,7 +163,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let sums = Buffer::new(gpu, "counts", OBJECT_LISTS as usize * all)?;
         let listed = Buffer::new(gpu, "lists", blocks.list_words())?;
         let arguments = Buffer::new(gpu, "arguments", blocks.draws())?;
-        let job = prepared(gpu, &pass, &blocks, &decisions, (&sums, &listed, &arguments))?;
+        let job = prepared(gpu, &pass, &blocks, &decisions, &sums, &listed, &arguments)?;
         let seen = decisions.iter().filter(|decision| **decision > 0).count();
         // The kernel reads the counts twice and writes them, reads the decisions, and writes an index of each that is seen.
         // It overwrites the counts, so they are copied anew each time, and that is a part of its time.
@@ -171,7 +173,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             encoder.copy_buffer_to_buffer(fresh.raw(), 0, sums.raw(), 0, fresh.bytes());
             job.record(encoder);
         };
-        measure(bench, name, (count, "instance"), words, &record, || {
+        measure(bench, name, count, "instance", words, &record, || {
             blocks.objects.iter().map(|object| lists(object, &decisions)).collect::<Vec<_>>()
         })?;
     }

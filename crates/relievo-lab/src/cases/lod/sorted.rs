@@ -64,7 +64,8 @@ impl Given {
         &self,
         gpu: &Gpu,
         pass: &SortedPass,
-        (draws, entries): (&Buffer<SceneDraw>, &Buffer<u32>),
+        draws: &Buffer<SceneDraw>,
+        entries: &Buffer<u32>,
     ) -> Result<Job, Error> {
         let buffers = SortedBuffers {
             sorted: &Buffer::from_slice(gpu, "sorted", &self.sorted)?,
@@ -94,7 +95,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let given = Given::new(count);
         let output = Poisoned::<SceneDraw>::new(gpu, count)?;
         let lists = Poisoned::<u32>::new(gpu, count)?;
-        let job = given.prepared(gpu, &pass, (&output.buffer, &lists.buffer))?;
+        let job = given.prepared(gpu, &pass, &output.buffer, &lists.buffer)?;
         gpu.submit("verify", |encoder| job.record(encoder))?;
         let (expected, entries) = given.expected();
         let same = |actual: &[SceneDraw]| compare::exact(words(actual), words(&expected));
@@ -117,12 +118,12 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     let pass = SortedPass::new(gpu)?;
     for count in [1_000, 100_000] {
         let given = Given::new(count);
-        let outputs = (&Buffer::new(gpu, "draws", count)?, &Buffer::new(gpu, "entries", count)?);
-        let job = given.prepared(gpu, &pass, outputs)?;
+        let (draws, entries) = (Buffer::new(gpu, "draws", count)?, Buffer::new(gpu, "entries", count)?);
+        let job = given.prepared(gpu, &pass, &draws, &entries)?;
         // Three words and a decision are read, a draw of five is read and written, and an entry written.
         let words = 15 * count;
         let name = format!("{count} draws");
-        measure(bench, name, (count, "draw"), words, &|encoder| job.record(encoder), || given.expected())?;
+        measure(bench, name, count, "draw", words, &|encoder| job.record(encoder), || given.expected())?;
     }
     Ok(())
 }

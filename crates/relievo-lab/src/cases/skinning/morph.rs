@@ -145,7 +145,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         };
         let name = format!("4 targets, 10k × {instances}");
         let record = |encoder: &mut wgpu::CommandEncoder| job.iter().for_each(|job| job.record(encoder));
-        measure(bench, name, (all, "vertex"), words * all, &record, reference)?;
+        measure(bench, name, all, "vertex", words * all, &record, reference)?;
     }
     Ok(())
 }

@@ -175,7 +175,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let (all, words) = (count * TARGETS, 4 + 2 + 4 + 2 + 1);
         let mut weights = vec![0.0; all];
         let name = format!("4 targets × {count}");
-        measure(bench, name, (all, "weight"), words * all, &|encoder| job.record(encoder), || {
+        measure(bench, name, all, "weight", words * all, &|encoder| job.record(encoder), || {
             let weights = std::hint::black_box(&mut weights);
             let (instances, instance_lods) = (&instances[..], &instance_lods[..]);
             let crowd = MorphedCrowd { mesh, set: &set, clips: &[0], instances, instance_lods, elapsed: 0.5 };

@@ -52,7 +52,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut draw = Draw::new(case ^ 0x9a9e);
         let mut lods = vec![InstanceLod::UNSEEN; instances];
         for (name, seen) in FRAMES {
-            next(&mut lods, &mut draw, (name, seen), levels.len() as u32);
+            next(&mut lods, &mut draw, name, seen, levels.len() as u32);
             crowd.instance_lods.write(gpu, &lods)?;
             gpu.submit("verify", |encoder| job.record(encoder))?;
             reference.deal(&lods, &levels);
@@ -70,7 +70,7 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
 }
 
 /// The levels of detail of the next frame.
-fn next(lods: &mut [InstanceLod], draw: &mut Draw, (name, seen): (&str, u32), levels: u32) {
+fn next(lods: &mut [InstanceLod], draw: &mut Draw, name: &str, seen: u32, levels: u32) {
     for lod in lods.iter_mut() {
         match name {
             "the same again" => {}
@@ -107,7 +107,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         reference.deal(&lods, &levels);
         // The kernel reads an InstanceLod and what the instance holds.
         let case = format!("{instances} instances, unchanged");
-        measure(bench, case, (instances, "instance"), 4 * instances, &|encoder| job.record(encoder), || {
+        measure(bench, case, instances, "instance", 4 * instances, &|encoder| job.record(encoder), || {
             let mut pages = reference.clone();
             pages.deal(&lods, &levels);
             pages

@@ -100,7 +100,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             }
         };
         let name = format!("{BONES} bones × {instances}");
-        measure(bench, name, (pairs, "bone"), 37 * pairs, &|encoder| job.record(encoder), reference)?;
+        measure(bench, name, pairs, "bone", 37 * pairs, &|encoder| job.record(encoder), reference)?;
     }
     Ok(())
 }

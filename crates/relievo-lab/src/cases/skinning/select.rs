@@ -55,7 +55,7 @@ impl Frame {
     }
 
     /// The next frame.
-    fn next(&self, draw: &mut Draw, case: u32, (name, fraction, is_other): (&str, u32, bool)) -> Self {
+    fn next(&self, draw: &mut Draw, case: u32, name: &str, fraction: u32, is_other: bool) -> Self {
         let word =
             |_: &u32| (0..32).fold(0_u32, |word, bit| word | u32::from(draw.word() % 64 < fraction) << bit);
         let updated_bones = self.updated_bones.iter().map(word).collect();
@@ -108,8 +108,8 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
         let mut last = vec![Skinned::nothing(shape.targets); instances];
         let mut draw = Draw::new(case ^ 0xb17);
         let mut frame = Frame::before_all(instances, clusters.mask_words, shape.targets);
-        for (number, given) in FRAMES.into_iter().enumerate() {
-            frame = frame.next(&mut draw, case, given);
+        for (number, (kind, fraction, is_other)) in FRAMES.into_iter().enumerate() {
+            frame = frame.next(&mut draw, case, kind, fraction, is_other);
             crowd.instance_lods.write(gpu, &frame.instance_lods)?;
             crowd.weights.write(gpu, &frame.weights)?;
             buffers.updated_bones.write(gpu, &frame.updated_bones)?;
@@ -119,16 +119,16 @@ pub(crate) async fn parity(cases: &mut Cases<'_>) -> Result<(), Error> {
             let expected = select(&clusters, &frame.now(), &last);
             remember(&frame.now(), &mut last);
             let dispatched = active.dispatched.read(gpu).await?;
-            let name = format!("{} clusters × {instances}, {}", clusters.len(), given.0);
+            let name = format!("{} clusters × {instances}, {}", clusters.len(), kind);
             cases.check(name, &output, |actual| listed(actual, &dispatched, &expected)).await?;
-            let name = format!("{} clusters × {instances}, {}: updated bones", clusters.len(), given.0);
+            let name = format!("{} clusters × {instances}, {}: updated bones", clusters.len(), kind);
             let left: Vec<u32> =
                 frame.updated_bones.iter().map(|word| if clears { 0 } else { *word }).collect();
             cases.exact(name, &updated_bones, &left).await?;
-            let name = format!("{} clusters × {instances}, {}: remembered", clusters.len(), given.0);
+            let name = format!("{} clusters × {instances}, {}: remembered", clusters.len(), kind);
             cases.exact(name, &remembered, &words_of(&last)).await?;
         }
-        keeping_cases(cases, &pass, case, (&mesh, &clusters), &crowd).await?;
+        keeping_cases(cases, &pass, case, &mesh, &clusters, &crowd).await?;
     }
     Ok(())
 }
@@ -138,7 +138,8 @@ async fn keeping_cases(
     cases: &mut Cases<'_>,
     pass: &ClusterSelectPass,
     case: u32,
-    (mesh, clusters): (&MeshBuffers, &Clusters),
+    mesh: &MeshBuffers,
+    clusters: &Clusters,
     crowd: &SkinnedCrowd,
 ) -> Result<(), Error> {
     let (gpu, instances) = (cases.gpu, crowd.instances);
@@ -152,8 +153,8 @@ async fn keeping_cases(
     let mut states = vec![ClusterState::Still; count];
     let mut draw = Draw::new(case ^ 0x6ee9);
     let mut frame = Frame::before_all(instances, clusters.mask_words, mesh.targets);
-    for given in FRAMES {
-        frame = frame.next(&mut draw, case, given);
+    for (kind, fraction, is_other) in FRAMES {
+        frame = frame.next(&mut draw, case, kind, fraction, is_other);
         crowd.instance_lods.write(gpu, &frame.instance_lods)?;
         crowd.weights.write(gpu, &frame.weights)?;
         buffers.updated_bones.write(gpu, &frame.updated_bones)?;
@@ -170,7 +171,7 @@ async fn keeping_cases(
             let listed = listed(pairs, &dispatched, &expected);
             if listed.holds { compare::exact(found, &words) } else { listed }
         };
-        let name = format!("{} clusters × {instances}, {}: last kept", clusters.len(), given.0);
+        let name = format!("{} clusters × {instances}, {}: last kept", clusters.len(), kind);
         cases.check(name, &output, same).await?;
     }
     Ok(())
@@ -242,7 +243,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         let read = 2 + SKINNED_WORDS + 2 * words / seen;
         let name = if seen == 1 { "" } else { ", a quarter seen" };
         let case = format!("157 clusters × {instances}{name}");
-        measure(bench, case, (pairs, "cluster"), read * pairs, &|encoder| job.record(encoder), || {
+        measure(bench, case, pairs, "cluster", read * pairs, &|encoder| job.record(encoder), || {
             let now = Now { updated_bones: &updated_bones, instance_lods: &instance_lods, weights: &[] };
             select(&scene.clusters, &now, &last)
         })?;

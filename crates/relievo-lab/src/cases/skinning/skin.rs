@@ -102,7 +102,8 @@ impl Case {
             placed.extend(clusters.order.iter().map(|vertex| vertices[*vertex as usize]));
             expected.extend(expect(
                 tiers[instance_lods[instance].tier as usize],
-                (&vertices, &clusters),
+                &vertices,
+                &clusters,
                 &palette,
                 instance_lods[instance],
             ));
@@ -249,7 +250,8 @@ impl Case {
 /// The reference's vertices, each with its own bounds; see [`SKIN_BOUND`].
 fn expect(
     influences: &Influences,
-    (vertices, clusters): (&[Vertex], &Clusters),
+    vertices: &[Vertex],
+    clusters: &Clusters,
     palette: &Palette,
     instance_lod: InstanceLod,
 ) -> Vec<Expected> {
@@ -394,7 +396,7 @@ fn measured(bench: &mut Bench<'_>, pass: &SkinPass, scene: Scene, work: &Work) -
             }
         }),
     ];
-    bench.case(&work.name, (all, "vertex"), (4 * work.words * all) as u64, contenders)
+    bench.case(&work.name, all, "vertex", (4 * work.words * all) as u64, contenders)
 }
 
 /// The number of instances, a divisor of `instances`, whose vertices and copies fit one buffer.

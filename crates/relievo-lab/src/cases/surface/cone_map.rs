@@ -94,7 +94,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
                 drop(std::hint::black_box(cone_map(&map, &pyramid, Address::Wrap)));
             }),
         ];
-        bench.case(format!("{edge}x{edge}"), (texels, "cell"), 12 * texels as u64, contenders)?;
+        bench.case(format!("{edge}x{edge}"), texels, "cell", 12 * texels as u64, contenders)?;
     }
     Ok(())
 }

@@ -86,7 +86,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
             }),
         ];
         let name = format!("{edge}x{edge} batch {count}");
-        bench.case(name, (texels, "texel"), 4 * (texels * 7 / 3) as u64, contenders)?;
+        bench.case(name, texels, "texel", 4 * (texels * 7 / 3) as u64, contenders)?;
     }
     Ok(())
 }

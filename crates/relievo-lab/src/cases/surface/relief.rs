@@ -146,10 +146,10 @@ fn pictures(bench: &mut Bench<'_>, map: &HeightMap) -> Result<(), Error> {
     let albedo = Mips::of_color(BuiltInMap::Cobbles.albedo(TEXELS)?);
     let albedo = ColorTexture::new(gpu, &albedo, Address::Wrap)?;
     let target = Offscreen::new(gpu, [EDGE, EDGE])?;
-    let plain = Drawing::new(gpu, &target, (map, &albedo), ReliefMethod::Plain)?;
+    let plain = Drawing::new(gpu, &target, map, &albedo, ReliefMethod::Plain)?;
     let (rays, march) = (rays(EDGE, towards()), March::default());
     for method in ReliefMethod::ALL {
-        let drawing = Drawing::new(gpu, &target, (map, &albedo), method)?;
+        let drawing = Drawing::new(gpu, &target, map, &albedo, method)?;
         let surface = ReliefSurface::new(map, method, Address::Wrap);
         let contenders = vec![
             Contender::recorded(Backend::Gpu, |encoder| drawing.record(encoder, &target)),
@@ -161,7 +161,8 @@ fn pictures(bench: &mut Bench<'_>, map: &HeightMap) -> Result<(), Error> {
         let pixels = (EDGE * EDGE) as usize;
         bench.case(
             format!("{EDGE}² pixels, {}", method.name()),
-            (pixels, "pixel"),
+            pixels,
+            "pixel",
             4 * pixels as u64,
             contenders,
         )?;
@@ -191,7 +192,7 @@ fn listed(bench: &mut Bench<'_>, map: &HeightMap, method: ReliefMethod) -> Resul
         }),
     ];
     let bytes = 4 * samples + (rays.len() * (size_of::<ReliefRay>() + size_of::<ReliefHit>())) as u64;
-    bench.case(format!("{}, {mean:.1} loads a ray", method.name()), (rays.len(), "ray"), bytes, contenders)
+    bench.case(format!("{}, {mean:.1} loads a ray", method.name()), rays.len(), "ray", bytes, contenders)
 }
 
 fn textures(gpu: &Gpu, map: &HeightMap, method: ReliefMethod) -> Result<SurfaceTextures, Error> {
@@ -211,7 +212,8 @@ impl Drawing {
     fn new(
         gpu: &Gpu,
         target: &Offscreen,
-        (map, albedo): (&HeightMap, &ColorTexture),
+        map: &HeightMap,
+        albedo: &ColorTexture,
         method: ReliefMethod,
     ) -> Result<Self, Error> {
         let textures = textures(gpu, map, method)?;

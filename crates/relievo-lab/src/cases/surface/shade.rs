@@ -269,7 +269,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         ];
         let bytes = 4 * samples + (points.len() * (size_of::<ShadePoint>() + size_of::<Shade>())) as u64;
         let case = format!("{}, {mean:.1} loads a point", method.name());
-        bench.case(case, (points.len(), "point"), bytes, contenders)?;
+        bench.case(case, points.len(), "point", bytes, contenders)?;
     }
     Ok(())
 }

@@ -195,5 +195,5 @@ fn case(bench: &mut Bench<'_>, name: &str, config: &TerrainConfig) -> Result<(),
             }
         }),
     ];
-    bench.case(name, (points, "point"), 8 * points as u64, contenders)
+    bench.case(name, points, "point", 8 * points as u64, contenders)
 }

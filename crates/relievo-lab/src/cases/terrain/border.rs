@@ -83,7 +83,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         "257x257 batch 64, 16 samples",
-        (host.len(), 8),
+        host.len(),
+        8,
         |encoder| job.record(encoder),
         || {
             moved(&mut host, size, width, &around);

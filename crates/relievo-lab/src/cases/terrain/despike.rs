@@ -86,7 +86,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         "257x257 batch 64",
-        (windows.points(1), 8),
+        windows.points(1),
+        8,
         |encoder| job.record(encoder),
         || {
             for window in host.chunks_exact((width * width) as usize) {

@@ -161,5 +161,5 @@ fn case(bench: &mut Bench<'_>, name: &str, [size, count]: [u32; 2], iterations: 
             drop(std::hint::black_box((0..iterations).fold((host.clone(), Vec::new()), next)));
         }),
     ];
-    bench.case(name, (points, "point"), 40 * points as u64, contenders)
+    bench.case(name, points, "point", 40 * points as u64, contenders)
 }

@@ -122,5 +122,5 @@ pub(super) fn measure_levels(
     };
     let valleys = if features.is_empty() { "" } else { " valleys" };
     let name = format!("{size}x{size} batch {count}{generator}{valleys}");
-    bench.case(name, (points, "point"), 4 * points as u64, contenders)
+    bench.case(name, points, "point", 4 * points as u64, contenders)
 }

@@ -91,7 +91,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         "273x273 batch 4",
-        (case.origins.len(), 4),
+        case.origins.len(),
+        4,
         |encoder| job.record(encoder),
         || {
             black_box(case.expected(erosion));

@@ -157,7 +157,8 @@ pub(crate) async fn check_exact<T: bytemuck::Pod + PartialEq + Debug>(
 pub(crate) fn measure(
     bench: &mut Bench<'_>,
     name: &str,
-    (points, bytes): (usize, usize),
+    points: usize,
+    bytes: usize,
     record: impl Fn(&mut wgpu::CommandEncoder),
     reference: impl FnMut(),
 ) -> Result<(), Error> {
@@ -168,5 +169,5 @@ pub(crate) fn measure(
         Contender::job(Backend::Copy, &copied),
         Contender::host(Backend::Reference, reference),
     ];
-    bench.case(name, (points, "point"), (bytes * points) as u64, contenders)
+    bench.case(name, points, "point", (bytes * points) as u64, contenders)
 }

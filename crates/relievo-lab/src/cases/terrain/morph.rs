@@ -56,7 +56,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         "257x257 batch 64",
-        (points, 12),
+        points,
+        12,
         |encoder| job.record(encoder),
         || {
             drop(std::hint::black_box(morph(&from, &to, params.fixed_time())));

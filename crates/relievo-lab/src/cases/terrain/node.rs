@@ -74,7 +74,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         "65x65 3 finer batch 4",
-        (heights.len(), 4),
+        heights.len(),
+        4,
         |encoder| job.record(encoder),
         || {
             for region in heights.chunks_exact(points(shape)) {

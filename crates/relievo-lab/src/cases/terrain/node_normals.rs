@@ -75,7 +75,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         "65x65 3 finer batch 4",
-        (4 * count, 4),
+        4 * count,
+        4,
         |encoder| job.record(encoder),
         || {
             for region in heights.chunks_exact(points) {

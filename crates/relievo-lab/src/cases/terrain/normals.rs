@@ -58,7 +58,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         "257x257 batch 64",
-        (points, 24),
+        points,
+        24,
         |encoder| job.record(encoder),
         || {
             for window in host.chunks_exact((width * width) as usize) {

@@ -84,7 +84,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         &format!("{size}x{size} batch {count}, apron {apron}"),
-        (total, 8),
+        total,
+        8,
         |encoder| job.record(encoder),
         || {
             around.iter().for_each(|around| drop(black_box(padded(&heights, size, apron, *around))));

@@ -61,7 +61,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
     measure(
         bench,
         "273x273 batch 4",
-        (points, count as usize),
+        points,
+        count as usize,
         |encoder| job.record(encoder),
         || {
             replace(&mut own, &some);

@@ -73,7 +73,8 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         measure(
             bench,
             name,
-            (points, 8),
+            points,
+            8,
             |encoder| job.record(encoder),
             || {
                 let last = |fields: Vec<i32>, iteration| iterated(&fields, width - 2 * iteration, params);

@@ -159,7 +159,7 @@ impl DisplacementMeter {
             for DrawnAs { list, .. } in measured.iter().filter_map(|instance| instance.drawn) {
                 watched.read_list(scene, view, list)?;
             }
-            for (instance, found) in found_of(scene, watched, &measured, (camera, &eye))? {
+            for (instance, found) in found_of(scene, watched, &measured, camera, &eye)? {
                 for (mesh, found) in found {
                     frame = frame.and(found.all);
                     let vertex = |(vertex, offset)| ((instance.instance, mesh, vertex), offset);
@@ -199,7 +199,8 @@ fn found_of<'a>(
     scene: &Scene,
     watched: &Watched,
     instances: &'a [DrawnInstance],
-    seen: (&Camera, &Eye),
+    camera: &Camera,
+    eye: &Eye,
 ) -> Result<Vec<(&'a DrawnInstance, FoundInMeshes)>, Error> {
     let mut all = Vec::with_capacity(instances.len());
     for part in instances.chunks(READ) {
@@ -211,8 +212,9 @@ fn found_of<'a>(
             Ok(Measurable { instance, vertices, placement, time: scene.clip_time(instance.instance)? })
         };
         let subjects: Vec<_> = part.iter().enumerate().map(subject).collect::<Result<_, Error>>()?;
-        let found =
-            |subject: &Measurable<'a, '_>| Ok((subject.instance, instance_found(watched, subject, seen)?));
+        let found = |subject: &Measurable<'a, '_>| {
+            Ok((subject.instance, instance_found(watched, subject, camera, eye)?))
+        };
         all.extend(subjects.par_iter().map(found).collect::<Result<Vec<_>, Error>>()?);
     }
     Ok(all)
@@ -231,7 +233,8 @@ struct Measurable<'a, 'b> {
 fn instance_found(
     watched: &Watched,
     Measurable { instance, vertices, placement, time }: &Measurable<'_, '_>,
-    (camera, eye): (&Camera, &Eye),
+    camera: &Camera,
+    eye: &Eye,
 ) -> Result<FoundInMeshes, Error> {
     let placed = placed(placement, camera.cell);
     let right = transformed(&watched.posed(*time), &placed);

@@ -137,7 +137,7 @@ impl Watched {
         let skinned = skinned.iter().map(|mesh| mesh.iter().map(position).collect());
         let moves = self.moves(drawn);
         let all = self.merged.model.meshes.iter().zip(&moves).zip(skinned);
-        Ok(all.map(|((mesh, moves), still)| moved((mesh, moves), still, drawn.way)).collect())
+        Ok(all.map(|((mesh, moves), still)| moved(mesh, moves, still, drawn.way)).collect())
     }
 
     /// For each merged mesh, which of its vertices are on their way to others; nothing if none is.
@@ -152,7 +152,7 @@ impl Watched {
 }
 
 /// The vertices of a mesh, of which those that are on their way have moved towards their partners.
-fn moved((mesh, moves): (&Mesh, &[bool]), still: Vec<DVec3>, way: f64) -> Vec<DVec3> {
+fn moved(mesh: &Mesh, moves: &[bool], still: Vec<DVec3>, way: f64) -> Vec<DVec3> {
     if moves.is_empty() {
         return still;
     }

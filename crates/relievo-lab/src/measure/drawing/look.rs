@@ -57,7 +57,8 @@ impl Look {
         gpu: &Gpu,
         stage: &Stage<'_>,
         drawn: &DrawnModel,
-        (placements, camera): (&[relievo::scene::Placement], Camera),
+        placements: &[relievo::scene::Placement],
+        camera: Camera,
         parts: &Parts,
     ) -> Result<Self, Error> {
         let (quality, budget) = parts.quality();

@@ -95,7 +95,7 @@ impl<'a> Drawing<'a> {
         let target = Offscreen::new(gpu, PICTURE)?;
         let mut renderer = Renderer::new(gpu, target.format())?;
         let (places, camera) = (placements.in_scene(), camera(stage, placements));
-        let look = |parts: &Parts| Look::new(gpu, stage, drawn, (&places, camera), parts);
+        let look = |parts: &Parts| Look::new(gpu, stage, drawn, &places, camera, parts);
         let looks = parts.iter().map(look).collect::<Result<Vec<_>, Error>>()?;
         looks.iter().try_for_each(|look| renderer.prepare(&look.scene))?;
         let timer = Timer::for_drawing(gpu)?;

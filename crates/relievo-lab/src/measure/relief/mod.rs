@@ -87,7 +87,8 @@ impl ReliefSquare {
         &self,
         method: ReliefMethod,
         gpu: Option<&Gpu>,
-        (background, finer): ([f32; 3], u32),
+        background: [f32; 3],
+        finer: u32,
         progress: &dyn Fn(&'static str),
     ) -> Result<Drawn, Error> {
         let rays = self.view.rays(self.material.scale, self.material.plane);

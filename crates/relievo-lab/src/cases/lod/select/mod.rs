@@ -431,7 +431,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         // The kernel reads 18 of an instance's words and writes two, and the placements of those that are seen.
         let words = 20 * count + 12 * seen;
         let case = format!("{count} instances, {seen} seen");
-        measure(bench, case, (count, "instance"), words, &|encoder| job.record(encoder), || {
+        measure(bench, case, count, "instance", words, &|encoder| job.record(encoder), || {
             instances.iter().map(|instance| select(&view, &objects[0], instance, None)).collect::<Vec<_>>()
         })?;
     }

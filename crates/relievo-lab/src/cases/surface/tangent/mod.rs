@@ -127,7 +127,7 @@ pub(crate) fn benchmark(bench: &mut Bench<'_>) -> Result<(), Error> {
         Contender::job(Backend::Copy, &copied),
         Contender::host(Backend::Reference, || drop(std::hint::black_box(tangents(&torus.mesh())))),
     ];
-    bench.case("512x512 torus", (vertices, "vertex"), 100 * vertices as u64, contenders)
+    bench.case("512x512 torus", vertices, "vertex", 100 * vertices as u64, contenders)
 }
 
 #[cfg(test)]
