@@ -178,6 +178,11 @@ pub fn drawn(
     })
 }
 
+/// Whether the adapter rounds vertices to a sixteenth of a pixel, the coarsest step that Vulkan allows. Others round to a 256th.
+pub fn is_coarse(gpu: &Gpu) -> bool {
+    gpu.adapter().name.contains("SwiftShader")
+}
+
 /// The number of pixels that differ by more than `levels` in a channel.
 pub fn differing(a: &[[u8; 4]], b: &[[u8; 4]], levels: u8) -> usize {
     assert_eq!(a.len(), b.len());
