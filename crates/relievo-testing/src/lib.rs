@@ -121,9 +121,10 @@ impl Tolerance {
     /// The tolerance of drawn pictures: drivers round colours differently and disagree about pixels on edges.
     pub const IMAGE: Self = Self { levels: 3, outliers: 0.02, flip: 0.01 };
 
-    /// The tolerance on the suite's adapter. Where it [`is_coarse`], half as many pixels again lie on edges that it moves.
+    /// The tolerance on the suite's adapter. Where it [`is_coarse`], pixels on the edges of triangles may differ by half as much again.
     fn here(self) -> Self {
-        Self { outliers: if is_coarse() { 1.5 } else { 1.0 } * self.outliers, ..self }
+        let factor = if is_coarse() { 1.5 } else { 1.0 };
+        Self { outliers: f64::from(factor) * self.outliers, flip: factor * self.flip, ..self }
     }
 }
 
