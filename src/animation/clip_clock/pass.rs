@@ -59,8 +59,8 @@ impl ClipClockJob {
     /// `elapsed` ([`Frame::ahead`](crate::animation::gate::Frame::ahead)).
     ///
     /// # Errors
-    /// [`InputError`] if a time is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS); [`crate::gpu::GpuError`] for errors
-    /// of the device.
+    /// [`InputError`] if a time is not within ±[`MAX_SECONDS`](crate::animation::instance::MAX_SECONDS);
+    /// [`crate::gpu::GpuError`] for errors of the device.
     pub fn set(&self, gpu: &Gpu, elapsed: f32, ahead: f32) -> Result<(), Error> {
         self.set_through(&mut &*gpu, elapsed, ahead)
     }

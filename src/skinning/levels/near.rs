@@ -11,6 +11,7 @@ use super::bodies::common;
 use super::whole::{Whole, sorted};
 use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::{NO_BODY, Simplified};
+use crate::skinning::bounding_sphere::BoundingSphere;
 use crate::surface::tangent::Adjacency;
 
 /// The largest number of candidate triangles per point. If there are more, the triangles nearest in the first pose are
@@ -192,19 +193,19 @@ struct Search<'a> {
     keys: &'a [Vec<Vec3>],
     /// The rigid body of each vertex.
     bodies: &'a [u32],
-    /// A sphere around each triangle in the first pose, as center and radius.
-    spheres: Vec<(Vec3, f32)>,
+    /// A sphere around each triangle in the first pose.
+    spheres: Vec<BoundingSphere>,
 }
 
 impl<'a> Search<'a> {
     fn new(indices: &'a [u32], keys: &'a [Vec<Vec3>], bodies: &'a [u32]) -> Self {
         let sphere = |triangle: &[u32; 3]| {
             let corners = triangle.map(|vertex| keys[0][vertex as usize]);
-            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let center = (corners[0] + corners[1] + corners[2]) / 3.0;
             let radius =
-                corners.map(|corner| corner.distance_squared(middle)).into_iter().fold(0.0, f32::max);
+                corners.map(|corner| corner.distance_squared(center)).into_iter().fold(0.0, f32::max);
             // The radius is enlarged slightly, to cover rounding.
-            (middle, 1.000_01 * radius.sqrt())
+            BoundingSphere { center, radius: 1.000_01 * radius.sqrt() }
         };
         let spheres = indices.as_chunks::<3>().0.iter().map(sphere).collect();
         Self { indices, keys, bodies, spheres }
@@ -274,7 +275,7 @@ impl Nearest {
 
     /// Starts with the triangle whose center is nearest. Its distance rules out most other triangles quickly.
     fn start(&mut self, search: &Search<'_>, wanted: Vec3, triangles: impl Iterator<Item = u32>) {
-        let to_middle = |triangle: &u32| search.spheres[*triangle as usize].0.distance_squared(wanted);
+        let to_middle = |triangle: &u32| search.spheres[*triangle as usize].center.distance_squared(wanted);
         if let Some(likely) = triangles.min_by(|a, b| to_middle(a).total_cmp(&to_middle(b))) {
             self.add(search, wanted, likely);
         }
@@ -291,9 +292,9 @@ impl Nearest {
     }
 
     /// Whether a whole sphere is farther from `wanted` than the nearest triangle found so far.
-    fn is_beyond(&self, wanted: Vec3, sphere: &(Vec3, f32)) -> bool {
-        let (middle, radius) = sphere;
-        middle.distance_squared(wanted) > (self.within + radius) * (self.within + radius)
+    fn is_beyond(&self, wanted: Vec3, sphere: &BoundingSphere) -> bool {
+        let reach = self.within + sphere.radius;
+        sphere.center.distance_squared(wanted) > reach * reach
     }
 
     fn found(&self) -> Option<u32> {
@@ -306,7 +307,7 @@ impl Nearest {
 struct Clusters<'a> {
     around: &'a Around,
     /// For each point, a sphere around its triangles in the first pose.
-    spheres: Vec<(Vec3, f32)>,
+    spheres: Vec<BoundingSphere>,
     /// For each point, the rigid body that all of its triangles belong to, or [`NO_BODY`].
     bodies: Vec<u32>,
     /// Whether there is only one pose.
@@ -318,10 +319,10 @@ impl<'a> Clusters<'a> {
         let sphere = |point: u32| {
             let all = || around.of(point).map(|triangle| search.spheres[triangle as usize]);
             let count = all().count().max(1) as f32;
-            let middle = all().map(|(middle, _)| middle).sum::<Vec3>() / count;
+            let center = all().map(|sphere| sphere.center).sum::<Vec3>() / count;
             // The radius is enlarged slightly, to cover rounding.
-            let reach = |(other, radius): (Vec3, f32)| 1.000_01 * (other.distance(middle) + radius);
-            (middle, all().map(reach).fold(0.0, f32::max))
+            let reach = |other: BoundingSphere| 1.000_01 * (other.center.distance(center) + other.radius);
+            BoundingSphere { center, radius: all().map(reach).fold(0.0, f32::max) }
         };
         let body = |point: u32| {
             let mut bodies =
@@ -356,7 +357,7 @@ impl<'a> Clusters<'a> {
         match likely {
             Some(triangle) => best.add(search, wanted, triangle),
             None => {
-                let to_middle = |point: &u32| self.spheres[*point as usize].0.distance_squared(wanted);
+                let to_middle = |point: &u32| self.spheres[*point as usize].center.distance_squared(wanted);
                 let point = *points.iter().min_by(|a, b| to_middle(a).total_cmp(&to_middle(b)))?;
                 best.start(search, wanted, self.around.of(point).filter(&is_own));
             }
