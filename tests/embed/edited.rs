@@ -65,8 +65,8 @@ fn a_flight_over_injected_heights_keeps_its_promise() {
     {
         let config = config(interpolation);
         let features = features(&config, &road(height), mode);
-        let mut world = World::of(&source(&config, features.clone()), [160, 90]);
-        let path = Path { from: [24.0, 60.0], frames: 12, metres: 200.0, height: 120.0, every: 4, step: 9 };
+        let mut world = World::of(&source(&config, features.clone()), [96, 54]);
+        let path = Path { from: [24.0, 60.0], frames: 12, metres: 200.0, height: 120.0, every: 4, step: 3 };
         let flight = flight(&mut world, &|x, z| truth(&config, &features, x, z), &path);
         println!("{interpolation:?} {mode:?}: {flight:?}");
         assert_eq!(flight.holes, 0);

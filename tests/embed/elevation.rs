@@ -77,8 +77,8 @@ fn a_flight_over_a_map_keeps_its_promise() {
         let config = TerrainConfig { interpolation, ..config() };
         let tiles =
             Arc::new(ElevationTiles::new(&config, &map([-170, -310], [420, 380], 1, margin)).expect("valid"));
-        let mut world = World::of(&source(&config, tiles.clone()), [160, 90]);
-        let path = Path { from: [40.0, 110.0], frames: 12, metres: 240.0, height: 160.0, every: 4, step: 5 };
+        let mut world = World::of(&source(&config, tiles.clone()), [96, 54]);
+        let path = Path { from: [40.0, 110.0], frames: 12, metres: 240.0, height: 160.0, every: 4, step: 2 };
         let flight = flight(&mut world, &|x, z| truth(&config, &tiles, x, z), &path);
         println!("{flight:?}");
         assert_eq!(flight.holes, 0);
@@ -168,7 +168,7 @@ fn injected_heights_lie_on_the_map() {
             };
             TerrainSource::from(recipe).with_limits(small_nodes()).with_elevation(tiles.clone())
         };
-        let mut world = World::of(&with(&points), [160, 90]);
+        let mut world = World::of(&with(&points), [96, 54]);
         let [mut other, plain, apart] =
             [&points[..], &[], &around].map(|points| World::of(&with(points), [16, 9]));
         let ground = |world: &World, [x, z]: [f64; 2]| {
@@ -212,14 +212,14 @@ fn injected_heights_lie_on_the_map() {
         }
         let far = [-300.0, 300.0];
         assert_eq!(ground(&apart, far), ground(&other, far), "features of the map change heights around it");
-        let path = Path { from: [24.0, 60.0], frames: 9, metres: 220.0, height: 150.0, every: 4, step: 5 };
+        let path = Path { from: [24.0, 60.0], frames: 9, metres: 220.0, height: 150.0, every: 4, step: 2 };
         let flight = flight(&mut world, &|x, z| ground(&other, [x, z]), &path);
         println!("{spacing} {mode:?}: {flight:?}");
         assert_eq!(flight.holes, 0);
         assert!(flight.ready[0] <= 1.0 + ROUNDING && flight.ready[1] <= 1.0 + ROUNDING, "{flight:?}");
         assert!(flight.ready_frames >= 4, "{flight:?}");
         // The same as from the beginning, and as without.
-        let mut edited = World::of(&with(&[]), [160, 90]);
+        let mut edited = World::of(&with(&[]), [96, 54]);
         let (place, above) = ([20.0, 20.0], 90.0);
         let camera = world.above(place, above);
         let settled = |world: &mut World| {
@@ -271,9 +271,9 @@ fn tiles_that_arrive_one_by_one_give_the_same_picture() {
     let config = config();
     let tiles = ElevationTiles::new(&config, &map([-300, -700], [700, 900], 1, 30)).expect("valid");
     let camera =
-        Camera::looking_at_world([20.0, 95.0, 60.0], [30.0, 60.0, -60.0], 0.9, [0.5, 12_000.0], [160, 90]);
+        Camera::looking_at_world([20.0, 95.0, 60.0], [30.0, 60.0, -60.0], 0.9, [0.5, 12_000.0], [96, 54]);
     let shown = |source: &TerrainSource| {
-        let mut world = World::of(source, [160, 90]);
+        let mut world = World::of(source, [96, 54]).within(2.0);
         world.view.set(camera).expect("valid");
         let mut awaited = 0;
         for _ in 0..3_000 {
@@ -311,7 +311,7 @@ fn tiles_that_arrive_one_by_one_give_the_same_picture() {
     std::fs::copy(folder.path().join("elevation.json"), broken.path().join("elevation.json"))
         .expect("copied");
     let loader = ElevationLoader::from_folder(broken.path()).expect("read");
-    let mut world = World::of(&source(&config, Arc::new(loader)), [160, 90]);
+    let mut world = World::of(&source(&config, Arc::new(loader)), [96, 54]).within(2.0);
     world.view.set(camera).expect("valid");
     let error = (0..3_000).find_map(|_| {
         std::thread::yield_now();
@@ -350,10 +350,10 @@ fn a_map_looks_the_same_far_from_the_origin() {
     let shown = |away: i32| {
         let map = map([-400 + away, -900 - away], [900, 1_000], 1, 0);
         let elevation = Arc::new(ElevationTiles::new(&config, &map).expect("valid"));
-        let mut world = World::of(&source(&config, elevation), [320, 180]);
+        let mut world = World::of(&source(&config, elevation), [160, 90]).within(3.0);
         let [x, z] = [f64::from(away), -f64::from(away)];
         let (eye, target) = ([x + 20.0, 95.0, z + 60.0], [x + 30.0, 40.0, z - 60.0]);
-        let camera = Camera::looking_at_world(eye, target, 0.7, [0.5, 900.0], [320, 180]);
+        let camera = Camera::looking_at_world(eye, target, 0.7, [0.5, 900.0], [160, 90]);
         world.view.set(camera).expect("valid");
         world.settle();
         picture(&mut world)

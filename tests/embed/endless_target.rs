@@ -40,12 +40,12 @@ fn truth(time: f64, x: f64, z: f64) -> f64 {
 
 /// What a camera sees of terrain, at a time to which it is set after it was added.
 fn seen(source: &TerrainSource, time: Option<f64>) -> image::RgbaImage {
-    let mut world = World::of(source, [96, 54]);
+    let mut world = World::of(source, [64, 36]);
     if let Some(time) = time {
         world.scene.morph_terrain(world.land, TerrainMorph { time }).expect("a target");
     }
     let (eye, at) = ([40.0, 200.0, -700.0], [42.0, 160.0, -740.0]);
-    let camera = Camera::looking_at_world(eye, at, 0.9, [0.5, 12_000.0], [96, 54]);
+    let camera = Camera::looking_at_world(eye, at, 0.9, [0.5, 12_000.0], [64, 36]);
     world.view.set(camera).expect("valid");
     world.settle();
     picture(&mut world)

@@ -1,6 +1,7 @@
 //! Models that are replaced by finer ones.
 
 use std::ops::ControlFlow;
+use std::sync::LazyLock;
 
 use glam::Vec3;
 use image::RgbaImage;
@@ -17,8 +18,18 @@ use relievo::scene::{
 use crate::frame::{Frame, device, devices};
 use crate::world::SIZE;
 
-/// The models of a package: with the coarsest level, with half of the levels, and with all.
-fn stages(name: &str) -> [Model; 3] {
+/// The models of the rock's package and of the creature's: with the coarsest level, with half of the levels, and with all.
+fn stages(name: &str) -> &'static [Model; 3] {
+    static ROCK: LazyLock<[Model; 3]> = LazyLock::new(|| cooked("rock"));
+    static CREATURE: LazyLock<[Model; 3]> = LazyLock::new(|| cooked("creature"));
+    match name {
+        "rock" => &ROCK,
+        "creature" => &CREATURE,
+        other => panic!("{other}"),
+    }
+}
+
+fn cooked(name: &str) -> [Model; 3] {
     let file = relievo_samples::model(name).expect("built in").into();
     let bytes = cook(&file, &mut |_| ControlFlow::Continue(())).expect("cooked").expect("not broken off");
     let mut package = Package::new(&bytes).expect("a package");

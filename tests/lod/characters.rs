@@ -317,7 +317,7 @@ fn part(skin: usize) -> Mesh {
 fn reduced_skeletons_keep_the_promise() {
     println!("{HEAD}");
     for (name, model) in [("creature", character()), ("machine", machine())] {
-        let [[without, with], _] = compare(name, &model, 36);
+        let [[without, with], _] = compare(name, &model, 18);
         assert!(5 * with.bones < 4 * without.bones, "{name}: {} of {}", with.bones, without.bones);
         assert!(with.memory.len() > 1 && with.memory.iter().all(|bytes| *bytes > 0));
     }

@@ -11,12 +11,16 @@ const SMALL: [&str; 10] = [
     "--clip",
     "walk",
     "--instances",
-    "9",
+    "6",
     "--frames",
-    "20",
+    "12",
     "--distance",
     "200,900,2000",
 ];
+
+/// The instances and frames of these arguments.
+const INSTANCES: f64 = 6.0;
+const FRAMES: f64 = 12.0;
 
 /// Runs `crowd` into the folder `out` of a folder of its own.
 fn run(arguments: &[&str]) -> (Run, tempfile::TempDir) {
@@ -67,7 +71,7 @@ fn backends_decide_alike_and_reports_add_up() {
         assert!(gpu["adapter"].is_string() && cpu["adapter"].is_null(), "{gate:?}");
         assert_eq!((&gpu["gate"], gpu["gate"]["mode"].as_str()), (&cpu["gate"], Some(gate[1])));
         assert_eq!((&gpu["bones"], rows(&gpu).len(), rows(&cpu).len()), (&Value::from(153), 3, 3));
-        let moving = number(&gpu["animated_bones"]) * 9.0 * 20.0;
+        let moving = number(&gpu["animated_bones"]) * INSTANCES * FRAMES;
         for (row, reference) in rows(&gpu).iter().zip(rows(&cpu)) {
             for field in ["interpolated", "concatenated", "mean_omega", "skipped"] {
                 assert_eq!(row[field], reference[field], "{gate:?} {field} at {}", row["distance"]);
@@ -82,7 +86,7 @@ fn backends_decide_alike_and_reports_add_up() {
                 assert!((gpu - cpu).abs() <= 0.02 * cpu + 1e-3, "{gate:?}: {gpu} and {cpu} pixels");
             }
             assert!(rms.0 <= max.0 && p99.0 <= max.0);
-            assert_eq!((number(&a["points"]), number(&a["unseen"])), (9.0 * 20.0 * 153.0 * 6.0, 0.0));
+            assert_eq!((number(&a["points"]), number(&a["unseen"])), (INSTANCES * FRAMES * 153.0 * 6.0, 0.0));
             for stage in ["gate", "sample", "local_to_model", "total"] {
                 assert!(number(&row["nanoseconds_per_bone"][stage]) > 0.0, "{gate:?} {stage}");
             }
@@ -106,7 +110,7 @@ fn gates_save_and_err_as_they_say() {
     assert_eq!((number(&far["fraction"]), number(&far["concatenated"])), (0.0, 0.0));
     assert!(number(&far["error"]["max_metres"]) > 0.1 && number(&far["jump"]["max_metres"]) > 0.01);
     let budget = cpu(GATES[4]);
-    assert!(rows(&budget).iter().all(|row| number(&row["interpolated"]) == 300.0 * 20.0));
+    assert!(rows(&budget).iter().all(|row| number(&row["interpolated"]) == 300.0 * FRAMES));
     let bounded = cpu(GATES[5]);
     for row in rows(&bounded) {
         let worst = number(&row["error"]["max_pixels"]);

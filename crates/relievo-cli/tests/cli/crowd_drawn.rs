@@ -22,15 +22,27 @@ fn run(arguments: &[&str]) -> (Run, PathBuf, tempfile::TempDir) {
     (run, out, folder)
 }
 
-/// The rows of a report at 300 and 2000 units.
-fn rows(name: &str, arguments: &[&str]) -> ([Value; 2], PathBuf, tempfile::TempDir) {
-    let (run, out, folder) = run(&[&["--distance", "300,2000"], arguments].concat());
+/// The report of a run.
+fn report(name: &str, arguments: &[&str]) -> (Value, PathBuf, tempfile::TempDir) {
+    let (run, out, folder) = run(arguments);
     assert_eq!(run.code, Some(0), "{arguments:?}: {}", run.stderr);
     let text = std::fs::read(out.join(name)).expect("written");
     let report: Value = serde_json::from_slice(&text).expect("JSON");
     crate::assert_documented(&report);
+    (report, out, folder)
+}
+
+/// The rows of a report at 300 and 2000 units.
+fn rows(name: &str, arguments: &[&str]) -> ([Value; 2], PathBuf, tempfile::TempDir) {
+    let (report, out, folder) = report(name, &[&["--distance", "300,2000"], arguments].concat());
     let [near, far] = &report["distances"].as_array().expect("a list")[..] else { panic!("two distances") };
     ([near.clone(), far.clone()], out, folder)
+}
+
+/// The row of a report at one distance.
+fn row(name: &str, distance: &str, arguments: &[&str]) -> Value {
+    let (report, ..) = report(name, &[&["--distance", distance], arguments].concat());
+    report["distances"][0].clone()
 }
 
 fn number(value: &Value) -> f64 {
@@ -140,7 +152,7 @@ fn scenes_compare_six_ways() {
     assert!(instances(&far["all"])[0] == 0.0 && instances(&far["both"])[0] == 4.0, "{far}");
     assert!(image::open(out.join("scene.png")).expect("a PNG").width() >= 600);
     assert!(out.join("crowd_300.png").is_file());
-    let ([near, _], ..) = rows("scene.json", &[&gate[..], &["--mesh", "full"]].concat());
+    let near = row("scene.json", "300", &[&gate[..], &["--mesh", "full"]].concat());
     for missing in ["mesh", "all", "all_cheaper"] {
         assert_eq!(near[missing], Value::Null, "{missing}");
     }
@@ -151,22 +163,20 @@ fn scenes_compare_six_ways() {
 #[test]
 fn priorities_and_skeletons_of_a_crowd() {
     let gate = ["--gate", "uniform", "--scene", "--mesh", "full", "--skinning", "full"];
-    let ([_, plain], ..) = rows("scene.json", &gate);
-    let ([_, kept], out, _folder) = rows("scene.json", &[&gate[..], &["--priority", "hand_left=1"]].concat());
+    let far = ["--distance", "2000"];
+    let plain = row("scene.json", "2000", &gate);
+    let (report, ..) = report("scene.json", &[&far, &gate[..], &["--priority", "hand_left=1"]].concat());
+    let kept = &report["distances"][0];
     let bones = |row: &Value, way: &str| number(&row[way]["bones"]);
-    assert_eq!((bones(&plain, "animation"), bones(&kept, "animation")), (0.0, 4.0), "{kept}");
-    assert_eq!((bones(&plain, "off"), bones(&kept, "both")), (bones(&kept, "off"), 4.0));
-    let text = std::fs::read(out.join("scene.json")).expect("written");
-    let report: Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!((bones(&plain, "animation"), bones(kept, "animation")), (0.0, 4.0), "{kept}");
+    assert_eq!((bones(&plain, "off"), bones(kept, "both")), (bones(kept, "off"), 4.0));
     assert_eq!(report["priorities"], json!({"hand_left": 1.0}));
     let full =
         ["--gate", "bounded", "--pixels", "8", "--image", "--frames", "11", "--tiers", "0.5,rigid:0.125"];
-    let ([_, tiers], out, _folder) = rows("report.json", &full);
-    let ([_, whole], ..) = rows("report.json", &full[..7]);
+    let (report, ..) = self::report("report.json", &[&far, &full[..]].concat());
+    let (tiers, whole) = (&report["distances"][0], row("report.json", "2000", &full[..7]));
     assert!(number(&tiers["bones"]) < number(&whole["bones"]), "{tiers} {whole}");
-    assert!(off(&tiers)[0] <= 8.0, "{tiers}");
-    let text = std::fs::read(out.join("report.json")).expect("written");
-    let report: Value = serde_json::from_slice(&text).expect("JSON");
+    assert!(off(tiers)[0] <= 8.0, "{tiers}");
     assert_eq!(report["tiers"], json!([{"bones": 0.5, "rigid": false}, {"bones": 0.125, "rigid": true}]));
 }
 

@@ -198,8 +198,14 @@ fn both_backends_draw_and_normals_are_as_asked() {
 fn reducers_are_compared() {
     let bench = Bench::new();
     let out = bench.path("out");
-    let arguments =
-        ["simplify", "--model", "builtin:rock", "--compare", "--out", out.to_str().expect("UTF-8")];
+    let arguments = [
+        "simplify",
+        "--model",
+        &bench.model("hills.obj"),
+        "--compare",
+        "--out",
+        out.to_str().expect("UTF-8"),
+    ];
     let run = relievo(&arguments);
     assert_eq!((run.code, run.stderr.trim()), (Some(0), ""));
     assert_eq!(bench.names(), ["compare.json", "compare.md", "compare.png"]);

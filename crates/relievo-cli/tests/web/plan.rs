@@ -1,9 +1,9 @@
 //! The list of pipelines that the page must create, from the files and the manifest that `relievo shaders`
 //! writes.
 
-use std::path::Path;
-
 use serde_json::{Value, json};
+
+use crate::harness::relievo;
 
 /// Values of the override constants that are not `bool`: those that the library sets.
 const VALUES: &[(&str, &str, &[f64])] = &[
@@ -40,8 +40,12 @@ pub struct Written {
 }
 
 impl Written {
-    pub fn read(folder: &Path) -> Self {
-        let text = |file: &str| std::fs::read_to_string(folder.join(file)).expect("written");
+    /// Runs the program.
+    pub fn now() -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let run = relievo(&["shaders", "--out", folder.path().to_str().expect("UTF-8")]);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let text = |file: &str| std::fs::read_to_string(folder.path().join(file)).expect("written");
         let manifest: Value = serde_json::from_str(&text("manifest.json")).expect("JSON");
         let list = |name: &str| manifest[name].as_array().expect("a list").clone();
         let source = |entry: &Value| text(entry["file"].as_str().expect("a file"));
@@ -55,7 +59,11 @@ impl Written {
 
     /// A job for every shader.
     pub fn jobs(&self) -> Vec<Value> {
-        self.shaders.iter().zip(&self.sources).map(|(shader, source)| job(shader, source)).collect()
+        self.shaders_with_sources().map(|(shader, source)| job(shader, source)).collect()
+    }
+
+    pub fn shaders_with_sources(&self) -> impl Iterator<Item = (&Value, &str)> {
+        self.shaders.iter().zip(self.sources.iter().map(String::as_str))
     }
 }
 
@@ -70,9 +78,10 @@ fn all<'a>(entry: &'a Value, field: &str) -> &'a [Value] {
 
 fn job(shader: &Value, source: &str) -> Value {
     let name = name_of(shader);
-    let pipelines: Vec<_> = (constants(&name, all(shader, "overrides")).iter())
-        .flat_map(|constants| pipelines(&name, all(shader, "entry_points"), constants))
-        .collect();
+    let (entries, sets) = (all(shader, "entry_points"), constants(&name, all(shader, "overrides")));
+    let varied: Vec<_> = entries.iter().filter(|entry| is_varied(entry)).cloned().collect();
+    let of_set = |(at, constants)| pipelines(&name, if at == 0 { entries } else { &varied }, constants);
+    let pipelines: Vec<_> = sets.iter().enumerate().flat_map(of_set).collect();
     json!({ "name": name, "code": source, "groups": groups(all(shader, "bindings")), "pipelines": pipelines })
 }
 
@@ -92,6 +101,15 @@ fn constants(shader: &str, overrides: &[Value]) -> Vec<Value> {
         sets.extend(values.iter().filter(|value| **value != default).map(|value| json!({ &name: value })));
     }
     sets
+}
+
+/// Whether an entry is compiled with every value of every constant; the others are compiled with the defaults only. The varied entries
+/// reach every function that reads a constant, see `every_function_that_reads_a_constant_is_compiled_with_its_values`.
+pub fn is_varied(entry: &Value) -> bool {
+    let name = name_of(entry);
+    let name = name.trim_start_matches("relievo_");
+    let starts = ["color", "transparent", "depth_deep"];
+    entry["stage"] != "fragment" || name == "velocity" || starts.iter().any(|start| name.starts_with(start))
 }
 
 /// A compute pipeline, or for each fragment entry a render pipeline with its vertex entry.

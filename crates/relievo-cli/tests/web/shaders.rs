@@ -1,12 +1,14 @@
 //! The browser's compiler accepts every shader and module, and refuses some that are wrong on purpose.
 
+use std::collections::HashSet;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
+use naga::{Expression, Function, Handle};
 use serde_json::{Value, json};
 
-use crate::harness::{browser, relievo};
-use crate::plan::{Written, name_of};
+use crate::harness::browser;
+use crate::plan::{Written, is_varied, name_of};
 
 /// A literal just above the largest f32.
 const BEYOND_F32: &str = "const LARGEST = 3.40282347e38;
@@ -26,11 +28,7 @@ pub struct Said {
 pub fn said() -> &'static Said {
     static SAID: OnceLock<Said> = OnceLock::new();
     SAID.get_or_init(|| {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let out = folder.path().join("wgsl");
-        let run = relievo(&["shaders", "--out", out.to_str().expect("UTF-8")]);
-        assert_eq!(run.code, Some(0), "{}", run.stderr);
-        let written = Written::read(&out);
+        let written = Written::now();
         let jobs = [written.jobs(), modules(&written), faults()].concat();
         let limits = ["maxStorageBuffersPerShaderStage", "maxComputeInvocationsPerWorkgroup"];
         let plan = json!({ "jobs": jobs, "limits": limits }).to_string();
@@ -139,14 +137,17 @@ fn every_shader_compiles_with_every_value_of_its_constants() {
         let name = name_of(shader);
         let job = job(&name);
         assert_accepted(job);
-        // Every entry point occurs equally often; a vertex entry comes with each of its fragment entries.
+        // Every varied entry point occurs equally often, the others once; a vertex entry comes with each of its fragment entries.
         let entries = shader["entry_points"].as_array().expect("a list");
-        let starts: Vec<_> = entries.iter().filter(|entry| entry["stage"] != "vertex").map(name_of).collect();
-        for start in &starts {
-            let begin = format!("{name} {start} ");
-            let of_entry = pipelines(job).iter().filter(|made| name_begins(made, &begin)).count();
-            assert!(of_entry > 0 && of_entry * starts.len() == pipelines(job).len(), "{begin}");
-        }
+        let starts = entries.iter().filter(|entry| entry["stage"] != "vertex");
+        let made_of = |entry: &Value| {
+            let begin = format!("{name} {} ", name_of(entry));
+            pipelines(job).iter().filter(|made| name_begins(made, &begin)).count()
+        };
+        let (varied, others): (Vec<_>, Vec<_>) = starts.partition(|entry| is_varied(entry));
+        let sets = made_of(varied[0]);
+        assert!(sets > 0 && varied.iter().all(|entry| made_of(entry) == sets), "{name}");
+        assert!(others.iter().all(|entry| made_of(entry) == 1), "{name}");
         println!(
             "{name}: {} pipelines in {:.2} s",
             pipelines(job).len(),
@@ -158,6 +159,51 @@ fn every_shader_compiles_with_every_value_of_its_constants() {
         (said().written.jobs().iter()).map(|job| job["pipelines"].as_array().map_or(0, Vec::len)).sum();
     assert_eq!(made, planned);
     println!("{made} pipelines of {} shaders", said().written.shaders.len());
+}
+
+/// A function whose code depends on the value of a constant is in a pipeline of each value: those of the entries that are varied.
+#[test]
+fn every_function_that_reads_a_constant_is_compiled_with_its_values() {
+    let mut readers = 0;
+    for (shader, source) in Written::now().shaders_with_sources() {
+        let entries = shader["entry_points"].as_array().expect("a list");
+        let varied: Vec<_> = entries.iter().filter(|entry| is_varied(entry)).map(name_of).collect();
+        if varied.len() == entries.len() {
+            continue;
+        }
+        let module = naga::front::wgsl::parse_str(source).expect("valid");
+        let (mut reached, mut next) = (HashSet::new(), Vec::new());
+        for entry in &module.entry_points {
+            if varied.contains(&entry.name) {
+                next.extend(called(&entry.function));
+            } else {
+                assert!(!reads(&entry.function), "{} reads a constant", entry.name);
+            }
+        }
+        while let Some(function) = next.pop() {
+            if reached.insert(function) {
+                next.extend(called(&module.functions[function]));
+            }
+        }
+        for (handle, function) in module.functions.iter().filter(|(_, function)| reads(function)) {
+            assert!(reached.contains(&handle), "{}: {:?}", name_of(shader), function.name);
+            readers += 1;
+        }
+    }
+    assert!(readers > 20, "{readers}");
+}
+
+/// The functions whose results a function uses. All functions that read constants have results.
+fn called(function: &Function) -> Vec<Handle<Function>> {
+    let of = |(_, expression): (_, &Expression)| match expression {
+        Expression::CallResult(called) => Some(*called),
+        _ => None,
+    };
+    function.expressions.iter().filter_map(of).collect()
+}
+
+fn reads(function: &Function) -> bool {
+    function.expressions.iter().any(|(_, expression)| matches!(expression, Expression::Override(_)))
 }
 
 fn name_begins(pipeline: &Value, begin: &str) -> bool {

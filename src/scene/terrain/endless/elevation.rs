@@ -367,7 +367,7 @@ mod tests {
             let bare = Elevation::new(&tiles, &config).expect("valid");
             let no_offsets = FeatureOffsets::default();
             let (mut beyond, mut known, mut lacking, mut kinds) = (0, 0, 0, [0; 3]);
-            for node in 0..150_u32 {
+            for node in 0..80_u32 {
                 let (words, _) = threefry2x32([node, 0x71e5], [0, 1, 2, 3, 4, 5, 6, 7], [0; 8]);
                 let coarser = 1 + words[0] % 6;
                 // Around the map's middle, in samples.
@@ -413,15 +413,12 @@ mod tests {
                 }] += 1;
             }
             println!(
-                "{interpolation:?} {spacing} {mode:?}: {beyond} of 150 beyond the plain bound, {known} bounded, {lacking} beyond \
+                "{interpolation:?} {spacing} {mode:?}: {beyond} of 80 beyond the plain bound, {known} bounded, {lacking} beyond \
                  the bound without injected heights, {kinds:?}"
             );
-            assert!(
-                beyond > 20 && known > 20 && kinds[1] > 20 && kinds[2] > 10,
-                "{beyond} {known} {kinds:?}"
-            );
+            assert!(beyond > 10 && known > 10 && kinds[1] > 10 && kinds[2] > 5, "{beyond} {known} {kinds:?}");
             all_lacking += lacking;
         }
-        assert!(all_lacking > 3, "{all_lacking} nodes need the part of the injected heights");
+        assert!(all_lacking > 1, "{all_lacking} nodes need the part of the injected heights");
     }
 }
