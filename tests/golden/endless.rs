@@ -150,7 +150,8 @@ fn eroded() {
     let thermal = Some(Thermal { iterations: 16, talus: 2.0 });
     let hydraulic = Some(Hydraulic { iterations: 6, ..Hydraulic::default() });
     let recipe = TerrainRecipe { thermal, hydraulic, ..TerrainRecipe::new(config()) };
-    let limits = EndlessLimits { erosion_depth: 4.0, view_distance: Some(1_000.0), ..limits() };
+    let limits =
+        EndlessLimits { erosion_depth: 4.0, view_distance: Some(1_000.0), node_size: 33, ..limits() };
     let source = TerrainSource::from(recipe).with_limits(limits);
     check_view(&source, ([60.0, -40.0], 40.0), [160.0, 160.0], "endless_eroded");
 }

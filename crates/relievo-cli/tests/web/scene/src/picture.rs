@@ -105,7 +105,7 @@ impl World {
         let target = [at[0] + 300.0, height - 20.0, at[1] - 900.0];
         let camera = Camera::looking_at_world(eye, target, 0.8, [1.0, 10_000.0], SIZE);
         let mut world = Self::seen(gpu, scene, camera).await?;
-        world.eye.set_quality(Quality::pixels(2.0))?;
+        world.eye.set_quality(Quality::pixels(4.0))?;
         Ok(Self { land: Some(land), ..world })
     }
 
