@@ -66,7 +66,10 @@ fn a_level_relief_is_ground_that_lies_lower() {
         let expected = shot(&gpu, &source, 2.0 + lower, 1.6);
         let difference = Difference::of(&seen, &expected, 3);
         println!("{name}: {difference:?}");
-        assert!(difference.flip < 0.01, "{name}: {difference:?}");
+        assert!(
+            difference.flip < if crate::harness::is_coarse() { 0.015 } else { 0.01 },
+            "{name}: {difference:?}"
+        );
         // The comparison sees a relief of another depth.
         let other = Difference::of(&seen, &shot(&gpu, &source, 2.0 + lower + 0.1, 1.6), 3);
         assert!(other.flip > 0.03, "{name}: {other:?}");

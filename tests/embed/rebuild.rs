@@ -55,6 +55,8 @@ impl Whole {
         let mut encoder = gpu.encoder("frame");
         self.world.scene.record(&mut encoder, &mut [&mut self.view])?;
         gpu.queue().submit([encoder.finish()]);
+        // No more frames in flight than a scene allows, as where a window waits for its next picture.
+        gpu.wait()?;
         Ok(())
     }
 
