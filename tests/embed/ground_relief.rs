@@ -9,7 +9,7 @@ use relievo::ops::terrain::recipe::Recipe;
 use relievo::ops::terrain::texture::TerrainTexture;
 use relievo::render::Offscreen;
 use relievo::scene::{Camera, EndlessLimits, GroundRelief, Scene, TerrainSource};
-use relievo_testing::Difference;
+use relievo_testing::{Difference, Tolerance};
 
 use crate::frame::device;
 
@@ -66,10 +66,7 @@ fn a_level_relief_is_ground_that_lies_lower() {
         let expected = shot(&gpu, &source, 2.0 + lower, 1.6);
         let difference = Difference::of(&seen, &expected, 3);
         println!("{name}: {difference:?}");
-        assert!(
-            difference.flip < if crate::harness::is_coarse() { 0.015 } else { 0.01 },
-            "{name}: {difference:?}"
-        );
+        assert!(difference.flip < Tolerance::IMAGE.here().flip, "{name}: {difference:?}");
         // The comparison sees a relief of another depth.
         let other = Difference::of(&seen, &shot(&gpu, &source, 2.0 + lower + 0.1, 1.6), 3);
         assert!(other.flip > 0.03, "{name}: {other:?}");

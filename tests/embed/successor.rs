@@ -18,18 +18,11 @@ use relievo::scene::{
 use crate::frame::{Frame, device, devices};
 use crate::world::SIZE;
 
-/// The models of the rock's package and of the creature's: with the coarsest level, with half of the levels, and with all.
-fn stages(name: &str) -> &'static [Model; 3] {
-    static ROCK: LazyLock<[Model; 3]> = LazyLock::new(|| cooked("rock"));
-    static CREATURE: LazyLock<[Model; 3]> = LazyLock::new(|| cooked("creature"));
-    match name {
-        "rock" => &ROCK,
-        "creature" => &CREATURE,
-        other => panic!("{other}"),
-    }
-}
+static ROCK: LazyLock<[Model; 3]> = LazyLock::new(|| stages("rock"));
+static CREATURE: LazyLock<[Model; 3]> = LazyLock::new(|| stages("creature"));
 
-fn cooked(name: &str) -> [Model; 3] {
+/// The models of a package: with the coarsest level, with half of the levels, and with all.
+fn stages(name: &str) -> [Model; 3] {
     let file = relievo_samples::model(name).expect("built in").into();
     let bytes = cook(&file, &mut |_| ControlFlow::Continue(())).expect("cooked").expect("not broken off");
     let mut package = Package::new(&bytes).expect("a package");
@@ -100,7 +93,7 @@ impl Stage {
 #[test]
 fn a_finer_model_takes_the_place_of_a_coarser_one() {
     let gpu = device();
-    let (rocks, people) = (stages("rock"), stages("creature"));
+    let (rocks, people) = (&*ROCK, &*CREATURE);
     let mut stage = Stage::new(&gpu, &rocks[0], &people[0]);
     let mut before = stage.shot();
     for at in 1..3 {
@@ -130,7 +123,7 @@ fn changed(a: &RgbaImage, b: &RgbaImage) -> usize {
 #[test]
 fn finer_levels_appear_by_the_transition_of_the_object() {
     let gpu = device();
-    let (rocks, people) = (stages("rock"), stages("creature"));
+    let (rocks, people) = (&*ROCK, &*CREATURE);
     let transitions =
         [Transition::Geomorph, Transition::Dither(Pace::Band(0.3)), Transition::Dither(Pace::Seconds(0.5))];
     for transition in transitions {
@@ -184,7 +177,7 @@ fn finer_levels_appear_by_the_transition_of_the_object() {
 #[test]
 fn until_all_has_arrived_the_old_model_is_drawn() {
     let gpu = device();
-    let (rocks, people) = (stages("rock"), stages("creature"));
+    let (rocks, people) = (&*ROCK, &*CREATURE);
     let mut stage = Stage::new(&gpu, &rocks[0], &people[0]);
     let coarse = stage.shot();
     let finest = Stage::new(&gpu, &rocks[2], &people[2]).shot();
@@ -225,7 +218,7 @@ fn until_all_has_arrived_the_old_model_is_drawn() {
 #[test]
 fn attached_meshes_and_another_device_stay_with_the_new_model() {
     let [gpu, other] = devices();
-    let (rocks, people) = (stages("rock"), stages("creature"));
+    let (rocks, people) = (&*ROCK, &*CREATURE);
     let attach = |stage: &mut Stage| {
         let [rock, walker, _] = stage.instances;
         stage.scene.attach(rock, walker, "0", Transform::IDENTITY).expect("a bone");
@@ -253,7 +246,7 @@ fn attached_meshes_and_another_device_stay_with_the_new_model() {
 #[test]
 fn what_views_need_follows_the_camera() {
     let gpu = device();
-    let (rocks, people) = (stages("rock"), stages("creature"));
+    let (rocks, people) = (&*ROCK, &*CREATURE);
     let mut stage = Stage::new(&gpu, &rocks[0], &people[0]);
     let near = stage.scene.wanted(stage.rocks, &[&stage.view]).expect("a camera").expect("seen");
     let from = |z: f32, to: f32| {
@@ -276,7 +269,7 @@ fn what_views_need_follows_the_camera() {
 #[test]
 fn models_that_do_not_follow_are_refused() {
     let gpu = device();
-    let (rocks, people) = (stages("rock"), stages("creature"));
+    let (rocks, people) = (&*ROCK, &*CREATURE);
     let mut stage = Stage::new(&gpu, &rocks[0], &people[0]);
     let refused = |result: Result<(), relievo::Error>| result.expect_err("refused").to_string();
     let error = refused(stage.scene.set_model(stage.people, &rocks[1]));

@@ -122,7 +122,7 @@ impl Tolerance {
     pub const IMAGE: Self = Self { levels: 3, outliers: 0.02, flip: 0.01 };
 
     /// The tolerance on the suite's adapter. Where it [`is_coarse`], pixels on the edges of triangles may differ by half as much again.
-    fn here(self) -> Self {
+    pub fn here(self) -> Self {
         let factor = if is_coarse() { 1.5 } else { 1.0 };
         Self { outliers: f64::from(factor) * self.outliers, flip: factor * self.flip, ..self }
     }

@@ -22,9 +22,9 @@ fn run(arguments: &[&str]) -> (Run, PathBuf, tempfile::TempDir) {
     (run, out, folder)
 }
 
-/// The report of a run.
-fn report(name: &str, arguments: &[&str]) -> (Value, PathBuf, tempfile::TempDir) {
-    let (run, out, folder) = run(arguments);
+/// The report of a run at some distances.
+fn report(name: &str, distances: &str, arguments: &[&str]) -> (Value, PathBuf, tempfile::TempDir) {
+    let (run, out, folder) = run(&[&["--distance", distances], arguments].concat());
     assert_eq!(run.code, Some(0), "{arguments:?}: {}", run.stderr);
     let text = std::fs::read(out.join(name)).expect("written");
     let report: Value = serde_json::from_slice(&text).expect("JSON");
@@ -34,14 +34,14 @@ fn report(name: &str, arguments: &[&str]) -> (Value, PathBuf, tempfile::TempDir)
 
 /// The rows of a report at 300 and 2000 units.
 fn rows(name: &str, arguments: &[&str]) -> ([Value; 2], PathBuf, tempfile::TempDir) {
-    let (report, out, folder) = report(name, &[&["--distance", "300,2000"], arguments].concat());
+    let (report, out, folder) = report(name, "300,2000", arguments);
     let [near, far] = &report["distances"].as_array().expect("a list")[..] else { panic!("two distances") };
     ([near.clone(), far.clone()], out, folder)
 }
 
 /// The row of a report at one distance.
 fn row(name: &str, distance: &str, arguments: &[&str]) -> Value {
-    let (report, ..) = report(name, &[&["--distance", distance], arguments].concat());
+    let (report, ..) = report(name, distance, arguments);
     report["distances"][0].clone()
 }
 
@@ -163,21 +163,20 @@ fn scenes_compare_six_ways() {
 #[test]
 fn priorities_and_skeletons_of_a_crowd() {
     let gate = ["--gate", "uniform", "--scene", "--mesh", "full", "--skinning", "full"];
-    let far = ["--distance", "2000"];
     let plain = row("scene.json", "2000", &gate);
-    let (report, ..) = report("scene.json", &[&far, &gate[..], &["--priority", "hand_left=1"]].concat());
-    let kept = &report["distances"][0];
+    let (prior, ..) = report("scene.json", "2000", &[&gate[..], &["--priority", "hand_left=1"]].concat());
+    let kept = &prior["distances"][0];
     let bones = |row: &Value, way: &str| number(&row[way]["bones"]);
     assert_eq!((bones(&plain, "animation"), bones(kept, "animation")), (0.0, 4.0), "{kept}");
     assert_eq!((bones(&plain, "off"), bones(kept, "both")), (bones(kept, "off"), 4.0));
-    assert_eq!(report["priorities"], json!({"hand_left": 1.0}));
+    assert_eq!(prior["priorities"], json!({"hand_left": 1.0}));
     let full =
         ["--gate", "bounded", "--pixels", "8", "--image", "--frames", "11", "--tiers", "0.5,rigid:0.125"];
-    let (report, ..) = self::report("report.json", &[&far, &full[..]].concat());
-    let (tiers, whole) = (&report["distances"][0], row("report.json", "2000", &full[..7]));
+    let (reduced, ..) = report("report.json", "2000", &full);
+    let (tiers, whole) = (&reduced["distances"][0], row("report.json", "2000", &full[..7]));
     assert!(number(&tiers["bones"]) < number(&whole["bones"]), "{tiers} {whole}");
     assert!(off(tiers)[0] <= 8.0, "{tiers}");
-    assert_eq!(report["tiers"], json!([{"bones": 0.5, "rigid": false}, {"bones": 0.125, "rigid": true}]));
+    assert_eq!(reduced["tiers"], json!([{"bones": 0.5, "rigid": false}, {"bones": 0.125, "rigid": true}]));
 }
 
 /// A triangle that a morph target makes ten times as high in two seconds; the one bone that moves has no vertices.

@@ -59,7 +59,7 @@ impl Written {
 
     /// A job for every shader.
     pub fn jobs(&self) -> Vec<Value> {
-        self.shaders_with_sources().map(|(shader, source)| job(shader, source)).collect()
+        self.shaders_with_sources().map(|(shader, source)| job_of(shader, source)).collect()
     }
 
     pub fn shaders_with_sources(&self) -> impl Iterator<Item = (&Value, &str)> {
@@ -76,7 +76,8 @@ fn all<'a>(entry: &'a Value, field: &str) -> &'a [Value] {
     entry[field].as_array().unwrap_or_else(|| panic!("{entry} has no list `{field}`"))
 }
 
-fn job(shader: &Value, source: &str) -> Value {
+/// The job of a shader.
+pub fn job_of(shader: &Value, source: &str) -> Value {
     let name = name_of(shader);
     let (entries, sets) = (all(shader, "entry_points"), constants(&name, all(shader, "overrides")));
     let varied: Vec<_> = entries.iter().filter(|entry| is_varied(entry)).cloned().collect();
