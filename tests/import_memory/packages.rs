@@ -203,7 +203,7 @@ fn processor_seconds() -> f64 {
 #[test]
 fn packages_are_read_in_milliseconds() {
     let _alone = alone();
-    let source = relievo_samples::rock().expect("valid");
+    let source = relievo_samples::creature().expect("valid");
     let started = processor_seconds();
     let whole = cooked(&source);
     let cooked = processor_seconds() - started;
