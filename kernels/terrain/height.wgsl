@@ -3,7 +3,7 @@
 import package::wgsl::terrain::fixed::mean_of_four;
 import package::wgsl::terrain::level::{coarse_points, has_point, injected_four, level, offsets, origins, store_four};
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(16, 4)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if !has_point(id) {
         return;

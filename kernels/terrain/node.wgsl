@@ -68,26 +68,19 @@ fn apart(own: i32, surface: i32) -> u32 {
     return u32(max(own, surface)) - u32(min(own, surface)) + 2u;
 }
 
-// Deviation of the finer sample (x, y), counted from the node's first sample, from the node's triangles. The diagonal of a cell runs
-// from south-west to north-east.
-fn deviation_at(region: u32, x: u32, y: u32) -> u32 {
-    let step = 1u << params.finer;
-    let cell = min(vec2<u32>(x, y) >> vec2<u32>(params.finer), vec2<u32>(params.size - 2u));
-    let part = vec2<u32>(x, y) - cell * step;
-    let at = (cell + NODE_MARGIN) * step;
-    let north_east = height_at(region, at.x + step, at.y);
-    let south_west = height_at(region, at.x, at.y + step);
-    let is_north = part.x + part.y <= step;
-    let corner = select(at + step, at, is_north);
-    let start = height_at(region, corner.x, corner.y);
-    let along = select(vec2<u32>(step - part.y, step - part.x), part, is_north);
-    let surface = start + towards(start, north_east, along.x, params.finer)
-        + towards(start, south_west, along.y, params.finer);
-    let own = height_at(region, x + NODE_MARGIN * step, y + NODE_MARGIN * step);
+// Deviation of a finer sample from the triangles of its cell, whose corners have the heights `corners`: north-west, north-east,
+// south-west and south-east. `part` counts finer samples from the north-west corner. The diagonal of a cell runs from south-west to
+// north-east.
+fn deviation(own: i32, corners: vec4<i32>, part: vec2<u32>) -> u32 {
     if part.x == 0u && part.y == 0u {
         return 0u;
     }
-    return apart(own, surface);
+    let step = 1u << params.finer;
+    let is_north = part.x + part.y <= step;
+    let start = select(corners.w, corners.x, is_north);
+    let along = select(vec2<u32>(step - part.y, step - part.x), part, is_north);
+    return apart(own, start + towards(start, corners.y, along.x, params.finer)
+        + towards(start, corners.z, along.y, params.finer));
 }
 
 // Height of the finer sample `along` a side of the node and `depth` samples inside. Sides: west, east, north, south.
@@ -143,38 +136,52 @@ fn half_of(a: i32, b: i32) -> u32 {
     return u32(abs((a >> 1u) + (b >> 1u))) + 1u;
 }
 
-// Half the largest second difference around a finer sample that is not on the region's rim: along x, along y, and the twist of the
-// cell to the south-east.
-fn second_difference_at(region: u32, x: u32, y: u32) -> u32 {
-    let own = height_at(region, x, y);
-    let east = height_at(region, x + 1u, y);
-    let south = height_at(region, x, y + 1u);
-    let along_x = half_of(height_at(region, x - 1u, y) - own, east - own);
-    let along_y = half_of(height_at(region, x, y - 1u) - own, south - own);
-    let twist = half_of(own - east, height_at(region, x + 1u, y + 1u) - south);
-    return max(max(along_x, along_y), twist);
-}
-
-// Copies the sample (x, y) into the tile if it is one of the node's, and returns the facts of the sample. That of stitched borders is 0.
-fn inside(region: u32, slot: u32, has_tile: bool, x: u32, y: u32) -> array<u32, 5> {
-    var result: array<u32, 5>;
+// Copies those of a thread's samples into the tile that are the node's, and returns the facts of all: the largest height + `SIGN`, the
+// complement of the smallest, the largest deviation, and half the largest second difference. A second difference is that of a sample
+// and its neighbours along x, that along y, and the twist of the cell to the south-east. The thread goes down a column and loads the
+// heights of the row below, beside the one to the west; the corners of a cell are loaded once.
+fn inside(region: u32, slot: u32, has_tile: bool, x: u32, first_row: u32) -> vec4<u32> {
     let step = 1u << params.finer;
-    let own = height_at(region, x, y);
-    if ((x | y) & (step - 1u)) == 0u && has_tile {
-        let tile_width = params.size + 2u * NODE_MARGIN;
-        tiles[(slot * tile_width + (y >> params.finer)) * tile_width + (x >> params.finer)] = own;
-    }
+    let rim = params.width - 1u;
     let first = NODE_MARGIN * step;
-    let last = first + (params.size - 1u) * step;
-    if min(x, y) >= first && max(x, y) <= last {
-        result[0] = u32(own) ^ SIGN;
-        result[1] = ~result[0];
-        result[2] = deviation_at(region, x - first, y - first);
+    let last = rim - first;
+    let east = min(x + 1u, rim);
+    let cell_x = min((x - first) >> params.finer, params.size - 2u);
+    let corner_x = first + cell_x * step;
+    var found = vec4<u32>();
+    var corners = vec4<i32>();
+    var above = height_at(region, x, first_row - min(first_row, 1u));
+    var own = height_at(region, x, first_row);
+    var own_east = height_at(region, east, first_row);
+    for (var y = first_row; y < min(first_row + ROWS, params.width); y++) {
+        let below = height_at(region, x, min(y + 1u, rim));
+        let below_east = height_at(region, east, min(y + 1u, rim));
+        if ((x | y) & (step - 1u)) == 0u && has_tile {
+            let tile_width = params.size + 2u * NODE_MARGIN;
+            tiles[(slot * tile_width + (y >> params.finer)) * tile_width + (x >> params.finer)] = own;
+        }
+        if min(x, y) >= first && max(x, y) <= last {
+            let corner_y = first + min((y - first) >> params.finer, params.size - 2u) * step;
+            if y == first_row || y == corner_y {
+                corners = vec4<i32>(
+                    height_at(region, corner_x, corner_y), height_at(region, corner_x + step, corner_y),
+                    height_at(region, corner_x, corner_y + step), height_at(region, corner_x + step, corner_y + step));
+            }
+            let order = u32(own) ^ SIGN;
+            let from_surface = deviation(own, corners, vec2<u32>(x - corner_x, y - corner_y));
+            found = max(found, vec4<u32>(order, ~order, from_surface, 0u));
+        }
+        if min(x, y) >= 1u && max(x, y) < rim {
+            let along_x = half_of(height_at(region, x - 1u, y) - own, own_east - own);
+            let along_y = half_of(above - own, below - own);
+            let twist = half_of(own - own_east, below_east - below);
+            found.w = max(max(found.w, twist), max(along_x, along_y));
+        }
+        above = own;
+        own = below;
+        own_east = below_east;
     }
-    if min(x, y) >= 1u && max(x, y) + 1u < params.width {
-        result[4] = second_difference_at(region, x, y);
-    }
-    return result;
+    return found;
 }
 
 @compute @workgroup_size(64)
@@ -194,16 +201,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     } else if id.x < params.width && is_there {
         let tile_width = params.size + 2u * NODE_MARGIN;
         let has_tile = slot < arrayLength(&tiles) / (tile_width * tile_width);
-        var found: array<u32, 5>;
-        for (var y = ROWS * id.y; y < min(ROWS * (id.y + 1u), params.width); y++) {
-            let own = inside(region, slot, has_tile, id.x, y);
-            for (var fact = 0u; fact < NODE_FACTS; fact++) {
-                found[fact] = max(found[fact], own[fact]);
-            }
-        }
-        for (var fact = 0u; fact < NODE_FACTS; fact++) {
-            atomicMax(&most[fact], found[fact]);
-        }
+        let found = inside(region, slot, has_tile, id.x, ROWS * id.y);
+        atomicMax(&most[0], found.x);
+        atomicMax(&most[1], found.y);
+        atomicMax(&most[2], found.z);
+        atomicMax(&most[4], found.w);
     }
     workgroupBarrier();
     if lane < NODE_FACTS && is_there {

@@ -38,10 +38,8 @@ macro_rules! level_pass {
                 distribution: offset.code(),
                 features: $crate::terrain::fixed::FeatureMode::code_of(features),
             };
-            let stages = vec![LevelStage {
-                kernel: bindings::kernel(gpu, &constants)?,
-                threads: LevelThreads::Points,
-            }];
+            let kernel = bindings::kernel(gpu, &constants)?;
+            let stages = vec![LevelStage { kernel, threads: LevelThreads::Points, rows: 1 }];
             let bind = |gpu: &_, kernel: &_, buffers: LevelBuffers<'_>| {
                 let LevelBuffers { level, origins, coarse, fine, features, .. } = buffers;
                 let (origins, coarse, fine) = (origins.slice(), coarse.slice(), fine.slice());
@@ -62,9 +60,11 @@ pub(crate) use level_pass;
 pub(crate) struct LevelStage {
     pub kernel: Kernel,
     pub threads: LevelThreads,
+    /// Number of rows of a thread, for each of which it does its work.
+    pub rows: u32,
 }
 
-/// The work of one thread of a stage.
+/// The work of a thread of a stage in one row.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum LevelThreads {
     /// Computes the four fine points that belong to a coarse point.
@@ -149,9 +149,10 @@ impl LevelPass {
                 centers: &scratch.centers,
                 features: &features,
             };
-            for LevelStage { kernel, threads } in &self.stages {
+            for LevelStage { kernel, threads, rows } in &self.stages {
                 let edge = threads.edge(&params);
-                steps.push(Step::covering(kernel, (self.bind)(gpu, kernel, buffers)?, [edge, edge, count]));
+                let threads = [edge, edge.div_ceil(*rows), count];
+                steps.push(Step::covering(kernel, (self.bind)(gpu, kernel, buffers)?, threads));
             }
             if let Some(given) = given.filter(|given| given.coarser == left as u32 + coarser) {
                 let width = params.fine_width;

@@ -2,7 +2,7 @@
 
 use crate::gpu::bindings::terrain::smooth as bindings;
 use crate::gpu::{Gpu, GpuError, Group, Kernel};
-use crate::shared::terrain::smooth::{CENTERS, EDGES};
+use crate::shared::terrain::smooth::{CENTERS, EDGES, ROWS};
 use crate::terrain::config::Offset;
 use crate::terrain::fixed::FeatureMode;
 use crate::terrain::levels::{LevelBuffers, LevelPass, LevelStage, LevelThreads};
@@ -18,7 +18,7 @@ pub(crate) fn pass(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> 
             distribution: offset.code(),
             features: FeatureMode::code_of(features),
         };
-        Ok::<_, GpuError>(LevelStage { kernel: bindings::kernel(gpu, &constants)?, threads })
+        Ok::<_, GpuError>(LevelStage { kernel: bindings::kernel(gpu, &constants)?, threads, rows: ROWS })
     };
     let stages = vec![stage(CENTERS, LevelThreads::Centers)?, stage(EDGES, LevelThreads::Points)?];
     Ok(LevelPass { label: "terrain/smooth", stages, bind, with_features: features.is_some() })
