@@ -3,7 +3,7 @@
 use crate::terrain::config::{HEIGHT_LIMIT, HeightInterpolation, PATCH_EDGE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::fixed::{Draw, inject};
-use crate::terrain::window::{Lattice, Span};
+use crate::terrain::window::{Lattice, Region, Span};
 
 /// Heights of the base lattice of `seamless` terrain, where subdivision starts: random heights on the points of `spans`.
 pub(crate) fn base_lattice(config: &TerrainConfig, features: &Features, spans: [Span; 2]) -> Vec<i32> {
@@ -52,6 +52,56 @@ impl Given<'_> {
             }
         }
     }
+}
+
+/// One subdivision, from a coarser lattice to the lattice with half its spacing.
+pub(crate) struct Subdivision<'a> {
+    pub coarse: [Span; 2],
+    pub fine: [Span; 2],
+    /// Ranges of the random offsets, and with smooth interpolation those of points on edges.
+    pub range: u32,
+    pub edge_range: u32,
+    spacing: i64,
+    features: &'a Features,
+    draw: &'a Draw,
+    injected: Injected,
+}
+
+impl Subdivision<'_> {
+    /// Adds random offsets to the heights of the points (x, y), (x + 2, y), …, and injects features.
+    pub(crate) fn draw_row(&self, heights: &mut [i32], range: u32, x: i64, y: i64) {
+        let step = 2 * self.spacing as u32;
+        self.draw.add_row(heights, range, world(x, self.spacing), step, world(y, self.spacing));
+        self.injected.inject_row(self.features, y, x, 2, heights);
+    }
+}
+
+/// Heights of a region, in rows of `region.width` samples. `subdivide` makes a lattice from the next coarser one; points up to `rim`
+/// beyond it may have features. `given` heights replace those of their lattice.
+pub(crate) fn subdivided(
+    config: &TerrainConfig,
+    features: &Features,
+    given: Option<&Given<'_>>,
+    region: Region,
+    rim: u32,
+    subdivide: impl Fn(&Subdivision<'_>, &[i32]) -> Vec<i32>,
+) -> Vec<i32> {
+    let levels = region.levels(config);
+    let draw = &Draw::new(config);
+    let mut grid = base_lattice(config, features, levels[0]);
+    for (level, pair) in (0..).zip(levels.windows(2)) {
+        let left = config.levels() - level - 1;
+        let [coarse, fine] = [pair[0], pair[1]];
+        let spacing = config.sample_spacing() << left;
+        let injected = Injected::new(features, fine, spacing, rim, true);
+        let (range, edge_range) = (config.level_range(level), config.edge_range(level));
+        grid = subdivide(
+            &Subdivision { coarse, fine, range, edge_range, spacing, features, draw, injected },
+            &grid,
+        );
+        Given::replace(given, left, fine, &mut grid);
+    }
+    grid
 }
 
 /// Clamps a height to ±[`HEIGHT_LIMIT`].

@@ -33,13 +33,13 @@ macro_rules! level_pass {
             features: Option<$crate::terrain::fixed::FeatureMode>,
         ) -> Result<$crate::terrain::levels::LevelPass, $crate::gpu::GpuError> {
             use $crate::gpu::bindings::terrain::$name as bindings;
-            use $crate::terrain::levels::{LevelBuffers, LevelPass, LevelStage, LevelThreads};
+            use $crate::terrain::levels::{LevelBuffers, LevelPass, LevelStage, point_threads};
             let constants = bindings::Constants {
                 distribution: offset.code(),
                 features: $crate::terrain::fixed::FeatureMode::code_of(features),
             };
             let kernel = bindings::kernel(gpu, &constants)?;
-            let stages = vec![LevelStage { kernel, threads: LevelThreads::Points, rows: 1 }];
+            let stages = vec![LevelStage { kernel, threads: point_threads, rows: 1 }];
             let bind = |gpu: &_, kernel: &_, buffers: LevelBuffers<'_>| {
                 let LevelBuffers { level, origins, coarse, fine, features, .. } = buffers;
                 let (origins, coarse, fine) = (origins.slice(), coarse.slice(), fine.slice());
@@ -59,29 +59,21 @@ pub(crate) use level_pass;
 #[derive(Debug, Clone)]
 pub(crate) struct LevelStage {
     pub kernel: Kernel,
-    pub threads: LevelThreads,
-    /// Number of rows of a thread, for each of which it does its work.
+    /// Number of threads along a row of a window.
+    pub threads: fn(&Level) -> u32,
+    /// Number of rows of a thread.
     pub rows: u32,
 }
 
-/// The work of a thread of a stage in one row.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum LevelThreads {
-    /// Computes the four fine points that belong to a coarse point.
-    Points,
-    /// Computes the center of a coarse cell that has another cell on every side.
-    Centers,
+/// Number of threads along an edge of a window that compute the four fine points of a coarse point in each of their rows. There is one
+/// more than half the points, because a window may start anywhere in a cell.
+pub(crate) fn point_threads(level: &Level) -> u32 {
+    level.fine_width / 2 + 1
 }
 
-impl LevelThreads {
-    /// Number of threads along an edge of a window.
-    fn edge(self, level: &Level) -> u32 {
-        match self {
-            // Each row and column has one extra thread, because a window may start anywhere in a cell.
-            Self::Points => level.fine_width / 2 + 1,
-            Self::Centers => centers(level.coarse_width),
-        }
-    }
+/// The same for the center of a coarse cell that has another cell on every side.
+pub(crate) fn center_threads(level: &Level) -> u32 {
+    centers(level.coarse_width)
 }
 
 /// Number of centers along an edge of a window.
@@ -150,7 +142,7 @@ impl LevelPass {
                 features: &features,
             };
             for LevelStage { kernel, threads, rows } in &self.stages {
-                let edge = threads.edge(&params);
+                let edge = threads(&params);
                 let threads = [edge, edge.div_ceil(*rows), count];
                 steps.push(Step::covering(kernel, (self.bind)(gpu, kernel, buffers)?, threads));
             }

@@ -63,28 +63,27 @@ impl TerrainTexture {
     }
 
     fn from_texels(texels: Vec<u8>) -> Self {
-        let channel: [f32; 256] = std::array::from_fn(|byte| srgb::linear(byte as u8));
-        let linear = |texel: &[u8]| {
-            let [red, green, blue] = [0, 1, 2].map(|at| channel[usize::from(texel[at])]);
-            [red, green, blue, f32::from(texel[3]) / 255.0]
+        let light: Vec<f32> = (0..=255).map(srgb::linear).collect();
+        let is_height = |index: usize| index % 4 == 3;
+        let linear = |(index, byte): (usize, &u8)| {
+            if is_height(index) { f32::from(*byte) / 255.0 } else { light[usize::from(*byte)] }
         };
-        let mut level: Vec<[f32; 4]> = texels.chunks_exact(4).map(linear).collect();
+        let mut level: Vec<f32> = texels.iter().enumerate().map(linear).collect();
         let mut mips = vec![texels];
         let mut edge = TEXTURE_SIZE as usize;
         while edge > 1 {
             edge /= 2;
             // Each texel of a coarser level is the mean of 2 × 2 texels, computed in linear light.
             let mean = |index: usize| {
-                let (x, y) = (2 * (index % edge), 2 * (index / edge));
-                let at = |x: usize, y: usize| level[y * 2 * edge + x];
-                let four = [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)];
-                std::array::from_fn(|channel| four.iter().map(|texel| texel[channel]).sum::<f32>() / 4.0)
+                let (row, column, channel) = (index / (4 * edge), index / 4 % edge, index % 4);
+                let [first, below] = [0, 1].map(|dy| 8 * ((2 * row + dy) * edge + column) + channel);
+                (level[first] + level[first + 4] + level[below] + level[below + 4]) / 4.0
             };
-            level = (0..edge * edge).map(mean).collect();
-            let encoded = |[red, green, blue, height]: &[f32; 4]| {
-                [srgb::byte(*red), srgb::byte(*green), srgb::byte(*blue), (height * 255.0 + 0.5) as u8]
+            level = (0..4 * edge * edge).map(mean).collect();
+            let byte = |(index, value): (usize, &f32)| {
+                if is_height(index) { (value * 255.0 + 0.5) as u8 } else { srgb::byte(*value) }
             };
-            mips.push(level.iter().flat_map(encoded).collect());
+            mips.push(level.iter().enumerate().map(byte).collect());
         }
         Self { mips }
     }

@@ -2,17 +2,18 @@
 
 use crate::gpu::bindings::terrain::smooth as bindings;
 use crate::gpu::{Gpu, GpuError, Group, Kernel};
+use crate::shared::terrain::level::Level;
 use crate::shared::terrain::smooth::{CENTERS, EDGES, ROWS};
 use crate::terrain::config::Offset;
 use crate::terrain::fixed::FeatureMode;
-use crate::terrain::levels::{LevelBuffers, LevelPass, LevelStage, LevelThreads};
+use crate::terrain::levels::{LevelBuffers, LevelPass, LevelStage, center_threads, point_threads};
 
 /// The pass that generates smooth heights of `seamless` windows.
 ///
 /// # Errors
 /// Shader compilation errors of the driver.
 pub(crate) fn pass(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> Result<LevelPass, GpuError> {
-    let stage = |stage, threads| {
+    let stage = |stage, threads: fn(&Level) -> u32| {
         let constants = bindings::Constants {
             stage,
             distribution: offset.code(),
@@ -20,7 +21,7 @@ pub(crate) fn pass(gpu: &Gpu, offset: Offset, features: Option<FeatureMode>) -> 
         };
         Ok::<_, GpuError>(LevelStage { kernel: bindings::kernel(gpu, &constants)?, threads, rows: ROWS })
     };
-    let stages = vec![stage(CENTERS, LevelThreads::Centers)?, stage(EDGES, LevelThreads::Points)?];
+    let stages = vec![stage(CENTERS, center_threads)?, stage(EDGES, point_threads)?];
     Ok(LevelPass { label: "terrain/smooth", stages, bind, with_features: features.is_some() })
 }
 

@@ -3,9 +3,9 @@
 
 use crate::terrain::config::TerrainConfig;
 use crate::terrain::features::Features;
-use crate::terrain::fixed::{Draw, four_point, mean_of_two};
-use crate::terrain::lattice::{Given, Injected, base_lattice, limited, world};
-use crate::terrain::window::{Region, SMOOTH_RIM, Span};
+use crate::terrain::fixed::{four_point, mean_of_two};
+use crate::terrain::lattice::{Given, Subdivision, limited, subdivided};
+use crate::terrain::window::{Region, SMOOTH_RIM};
 
 /// Heights of a region, in rows of `region.width` samples. `given` heights replace those of their lattice, and finer ones follow. The
 /// region must be valid, and `config.interpolation` must be `Smooth`.
@@ -15,38 +15,7 @@ pub(crate) fn smooth(
     given: Option<&Given<'_>>,
     region: Region,
 ) -> Vec<i32> {
-    let levels = region.levels(config);
-    let draw = Draw::new(config);
-    let base_spacing = config.sample_spacing() << config.levels();
-    let mut grid = base_lattice(config, features, levels[0]);
-    for (level, pair) in (0..).zip(levels.windows(2)) {
-        let spacing = base_spacing >> (level + 1);
-        let step = Subdivision {
-            features,
-            draw: &draw,
-            coarse: pair[0],
-            fine: pair[1],
-            spacing,
-            range: config.level_range(level),
-            edge_range: config.edge_range(level),
-            injected: Injected::new(features, pair[1], spacing, SMOOTH_RIM, true),
-        };
-        grid = step.made(&grid);
-        Given::replace(given, config.levels() - level - 1, pair[1], &mut grid);
-    }
-    grid
-}
-
-/// One subdivision, from a coarser lattice to the lattice with half its spacing.
-struct Subdivision<'a> {
-    features: &'a Features,
-    draw: &'a Draw,
-    coarse: [Span; 2],
-    fine: [Span; 2],
-    spacing: i64,
-    range: u32,
-    edge_range: u32,
-    injected: Injected,
+    subdivided(config, features, given, region, SMOOTH_RIM, |step, coarse| step.four_point(coarse))
 }
 
 /// A grid of values in rows of equal width.
@@ -76,7 +45,7 @@ impl Rows {
 impl Subdivision<'_> {
     /// Computes the finer lattice from the coarser one. Indices count from the first coarse point; cell i lies between points i
     /// and i + 1. In rows of `along` and `centers`, entry i belongs to cell i + 1.
-    fn made(&self, coarse: &[i32]) -> Vec<i32> {
+    fn four_point(&self, coarse: &[i32]) -> Vec<i32> {
         let points = Rows { width: self.coarse[0].width(), values: coarse.to_vec() };
         let rows = self.coarse[1].width();
         let along = Rows {
@@ -132,9 +101,7 @@ impl Subdivision<'_> {
     fn finished(&self, mut heights: Vec<i32>, range: u32, at: [i64; 2]) -> Vec<i32> {
         let [x, y] = [0, 1].map(|axis| 2 * self.coarse[axis].first + at[axis]);
         heights.iter_mut().for_each(|height| *height = limited(*height));
-        let step = 2 * self.spacing as u32;
-        self.draw.add_row(&mut heights, range, world(x, self.spacing), step, world(y, self.spacing));
-        self.injected.inject_row(self.features, y, x, 2, &mut heights);
+        self.draw_row(&mut heights, range, x, y);
         heights.iter_mut().for_each(|height| *height = limited(*height));
         heights
     }

@@ -4,7 +4,7 @@ mod grass;
 mod stones;
 
 use super::field::{Field, made, mixed, ramp, stretched, texels as shaded};
-use super::noise::{cell, gradient, octaves, random, ridges, smoothstep};
+use super::noise::{Noise, cell, random, smoothstep};
 use crate::terrain::config::BuiltIn;
 
 /// Generates the texels of a built-in texture: sRGB colour and height, four bytes per texel.
@@ -25,19 +25,29 @@ fn apart<T>(pairs: Vec<(f32, T)>) -> (Field, Vec<T>) {
     pairs.into_iter().unzip()
 }
 
+/// The tilted plane of the cell of Worley noise at a point, raised or lowered by up to half of `lift`: its height there, and a random
+/// number from −0.5 to 0.5 of the cell.
+fn face(key: u32, periods: [u32; 2], lift: f32, at: [f32; 2]) -> (f32, f32) {
+    let cell = cell(key, periods, at);
+    let number = |use_of: u32| random(key + 1, [cell.word, use_of]) - 0.5;
+    (cell.offset[0] * number(0) + cell.offset[1] * number(1) + lift * number(2), number(3))
+}
+
 /// Sand: wind ripples, bent and broken up by noise, with grains on top.
 fn sand() -> Vec<u8> {
+    let (bends, waves) = (Noise::new(11, [3, 3], 3, 0.5), Noise::new(17, [9, 9], 1, 1.0));
+    let (strengths, hills) = (Noise::new(23, [5, 5], 2, 0.5), Noise::new(41, [6, 6], 4, 0.5));
+    let (coarse, fine) = (Noise::new(31, [160, 160], 1, 1.0), Noise::new(32, [251, 251], 1, 1.0));
     let (heights, grains) = apart(made(|at| {
         let [u, v] = at;
-        let bend = 0.045 * octaves(11, [3, 3], 3, 0.5, at);
-        let phase = 2.0 * u + 17.0 * (v + bend) + 0.35 * gradient(17, [9, 9], at);
+        let phase = 2.0 * u + 17.0 * (v + 0.045 * bends.at(at)) + 0.35 * waves.at(at);
         let wave = phase - phase.floor();
         // Ripples are asymmetric: the windward side is long, the lee side short.
         let ripple = if wave < 0.68 { wave / 0.68 } else { (1.0 - wave) / 0.32 };
         let ripple = smoothstep(0.0, 1.0, ripple);
-        let strength = 0.55 + 0.45 * octaves(23, [5, 5], 2, 0.5, at);
-        let grain = gradient(31, [160, 160], at) + 0.8 * gradient(32, [251, 251], at);
-        (0.7 * ripple * strength + 0.12 * octaves(41, [6, 6], 4, 0.5, at) + 0.05 * grain, grain)
+        let strength = 0.55 + 0.45 * strengths.at(at);
+        let grain = coarse.at(at) + 0.8 * fine.at(at);
+        (0.7 * ripple * strength + 0.12 * hills.at(at) + 0.05 * grain, grain)
     }));
     let heights = stretched(heights);
     let colors = [[0.66, 0.54, 0.37], [0.78, 0.67, 0.49], [0.86, 0.77, 0.60]];
@@ -47,19 +57,16 @@ fn sand() -> Vec<u8> {
 
 /// Broken rock: tilted faces of three sizes with rough noise, ridges and lichen on top.
 fn hill() -> Vec<u8> {
+    let bends = [51, 57].map(|key| Noise::new(key, [5, 5], 5, 0.6));
+    let (roughness, ridges) = (Noise::new(89, [12, 12], 6, 0.62), Noise::new(97, [6, 6], 4, 0.55));
+    let lichens = Noise::new(101, [9, 9], 5, 0.7);
     let (heights, marks) = apart(made(|at| {
-        let bend = |key: u32| 0.05 * octaves(key, [5, 5], 5, 0.6, at);
-        let bent = [at[0] + bend(51), at[1] + bend(57)];
-        let face = |key: u32, count: u32| {
-            let cell = cell(key, [count, count], bent);
-            let number = |use_of: u32| random(key + 1, [cell.word, use_of]) - 0.5;
-            (cell.offset[0] * number(0) + cell.offset[1] * number(1) + 0.3 * number(2), number(3))
-        };
+        let bent = [at[0] + 0.05 * bends[0].at(at), at[1] + 0.05 * bends[1].at(at)];
+        let face = |key: u32, count: u32| face(key, [count, count], 0.3, bent);
         let ((large, tone), (middle, _), (small, _)) = (face(61, 5), face(67, 13), face(73, 31));
-        let rough = octaves(89, [12, 12], 6, 0.62, at);
-        let ridge = ridges(97, 6, 4, bent);
-        let height = large + 0.55 * middle + 0.25 * small + 0.3 * rough + 0.35 * ridge;
-        let lichen = smoothstep(0.28, 0.55, octaves(101, [9, 9], 5, 0.7, at));
+        let rough = roughness.at(at);
+        let height = large + 0.55 * middle + 0.25 * small + 0.3 * rough + 0.35 * ridges.ridges(bent);
+        let lichen = smoothstep(0.28, 0.55, lichens.at(at));
         (height, [rough, lichen, tone + 0.5])
     }));
     let heights = stretched(heights);
@@ -74,12 +81,13 @@ fn hill() -> Vec<u8> {
 
 /// Snow in soft drifts, with a crust that the wind has cut in places.
 fn snow() -> Vec<u8> {
+    let (bends, drifts) = (Noise::new(111, [4, 4], 2, 0.5), Noise::new(113, [3, 7], 4, 0.45));
+    let cuts = Noise::new(127, [5, 5], 3, 0.55);
+    let (coarse, fine) = (Noise::new(131, [190, 190], 1, 1.0), Noise::new(137, [256, 256], 1, 1.0));
     let (heights, sparkles) = apart(made(|[u, v]| {
-        let at = [u + 0.03 * octaves(111, [4, 4], 2, 0.5, [u, v]), v];
-        let drift = octaves(113, [3, 7], 4, 0.45, at);
-        let cut = ridges(127, 5, 3, [at[0], at[1] * 2.0]);
-        let sparkle = gradient(131, [190, 190], at) + gradient(137, [256, 256], at);
-        (0.6 * drift + 0.22 * cut + 0.025 * sparkle, sparkle)
+        let at = [u + 0.03 * bends.at([u, v]), v];
+        let sparkle = coarse.at(at) + fine.at(at);
+        (0.6 * drifts.at(at) + 0.22 * cuts.ridges([at[0], at[1] * 2.0]) + 0.025 * sparkle, sparkle)
     }));
     let heights = stretched(heights);
     let colors = [[0.80, 0.85, 0.92], [0.89, 0.92, 0.96], [0.95, 0.96, 0.98]];
@@ -89,24 +97,22 @@ fn snow() -> Vec<u8> {
 
 /// Layers of rock with uneven thickness and hardness, broken into blocks. The top edge of the texture is the upper side.
 fn strata() -> Vec<u8> {
+    let (folds, tears) = (Noise::new(151, [3, 3], 3, 0.5), Noise::new(157, [11, 17], 5, 0.7));
+    let beds = [(163, 9), (173, 37)].map(|(key, count)| Noise::new(key, [1, count / 3], 1, 1.0));
+    let roughness = Noise::new(193, [12, 20], 6, 0.66);
     let (heights, marks) = apart(made(|[u, v]| {
-        let fold = 0.02 * octaves(151, [3, 3], 3, 0.5, [u, v]);
-        let torn = 0.010 * octaves(157, [11, 17], 5, 0.7, [u, v]);
+        let (fold, torn) = (0.02 * folds.at([u, v]), 0.010 * tears.at([u, v]));
         // Thick layers are divided into thin layers.
-        let bed = |key: u32, count: u32, at: f32| {
-            let scaled = at * count as f32 + 0.6 * gradient(key, [1, count / 3], [0.0, at]);
+        let bed = |key: u32, count: u32, unevenness: &Noise, at: f32| {
+            let scaled = at * count as f32 + 0.6 * unevenness.at([0.0, at]);
             let index = (scaled.floor() as i32).rem_euclid(count as i32) as u32;
             (random(key + 1, [index, 0]), scaled - scaled.floor())
         };
-        let (thick, inside) = bed(163, 9, v + fold + torn);
-        let (leaf, within) = bed(173, 37, v + fold + 0.6 * torn);
-        let block = |key: u32, counts: [u32; 2]| {
-            let cell = cell(key, counts, [u + 3.0 * torn + 0.37 * thick, v + fold + torn]);
-            let number = |use_of: u32| random(key + 1, [cell.word, use_of]) - 0.5;
-            (cell.offset[0] * number(0) + cell.offset[1] * number(1) + 0.5 * number(2), number(3))
-        };
-        let ((large, tone), (small, _)) = (block(181, [8, 15]), block(187, [21, 44]));
-        let rough = octaves(193, [12, 20], 6, 0.66, [u, v]);
+        let (thick, inside) = bed(163, 9, &beds[0], v + fold + torn);
+        let (leaf, within) = bed(173, 37, &beds[1], v + fold + 0.6 * torn);
+        let at = [u + 3.0 * torn + 0.37 * thick, v + fold + torn];
+        let ((large, tone), (small, _)) = (face(181, [8, 15], 0.5, at), face(187, [21, 44], 0.5, at));
+        let rough = roughness.at([u, v]);
         let ledge = smoothstep(0.0, 0.16, inside) * (0.75 + 0.25 * smoothstep(0.0, 0.3, within));
         let height = (0.4 + 0.45 * thick + 0.2 * leaf + 0.4 * large + 0.22 * small + 0.35 * rough)
             * (0.3 + 0.7 * ledge);

@@ -4,7 +4,7 @@ use super::TEXTURE_SIZE;
 use crate::parallel::prelude::*;
 
 /// Number of texels along an edge of a texture.
-const EDGE: usize = TEXTURE_SIZE as usize;
+pub const EDGE: usize = TEXTURE_SIZE as usize;
 
 /// One number per texel, row by row.
 pub type Field = Vec<f32>;
@@ -62,10 +62,7 @@ pub fn texels(heights: &[f32], mut colors: Vec<[f32; 3]>, shade: f32) -> Vec<u8>
         }
     }
     let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-    let texel = |(color, height): (&[f32; 3], &f32)| {
-        let [red, green, blue] = color.map(byte);
-        [red, green, blue, byte(*height)]
-    };
+    let texel = |([red, green, blue], height): (&[f32; 3], &f32)| [*red, *green, *blue, *height].map(byte);
     colors.iter().zip(heights).flat_map(texel).collect()
 }
 

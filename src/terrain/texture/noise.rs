@@ -36,46 +36,67 @@ fn wrapped(cell: i32, period: u32) -> u32 {
     if (0..period as i32).contains(&cell) { cell as u32 } else { cell.rem_euclid(period as i32) as u32 }
 }
 
-/// Gradient noise, about −1 to 1. `periods` is the number of lattice cells along the tile's edges.
-pub fn gradient(key: u32, periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
+/// The gradients of gradient noise along u and along v: eight directions, of about equal length.
+const ALONG_U: [f32; 8] = [1.3, -1.3, 1.3, -1.3, 0.55, 0.55, -0.55, -0.55];
+const ALONG_V: [f32; 8] = [0.55, 0.55, -0.55, -0.55, 1.3, -1.3, 1.3, -1.3];
+
+/// A sum of octaves of gradient noise. From one octave to the next, the frequency doubles and the weight is multiplied by `gain`.
+pub struct Noise {
+    /// Number of lattice cells of the first octave along the tile's edges.
+    periods: [u32; 2],
+    gain: f32,
+    /// The gradients of each octave at its lattice points, row by row.
+    octaves: Vec<Vec<u8>>,
+}
+
+impl Noise {
+    /// Draws the gradients of `count` octaves. Different keys give independent noise.
+    pub fn new(key: u32, periods: [u32; 2], count: u32, gain: f32) -> Self {
+        let octave = |octave: u32| {
+            let [columns, rows] = periods.map(|period| period << octave);
+            let gradient = |at: u32| word(key + octave, [at % columns, at / columns]) as u8 % 8;
+            (0..columns * rows).map(gradient).collect()
+        };
+        Self { periods, gain, octaves: (0..count).map(octave).collect() }
+    }
+
+    /// The noise at texture coordinates, about −1 to 1.
+    pub fn at(&self, at: [f32; 2]) -> f32 {
+        self.mean(at, |weight, noise| weight * noise)
+    }
+
+    /// Noise with sharp ridges, 0 to 1.
+    pub fn ridges(&self, at: [f32; 2]) -> f32 {
+        self.mean(at, |weight, noise| {
+            let ridge = 1.0 - noise.abs().min(1.0);
+            weight * ridge * ridge
+        })
+    }
+
+    /// The sum of weighted octaves, divided by the sum of their weights.
+    fn mean(&self, at: [f32; 2], weighted: impl Fn(f32, f32) -> f32) -> f32 {
+        let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
+        for (octave, gradients) in self.octaves.iter().enumerate() {
+            sum += weighted(weight, octave_at(gradients, self.periods.map(|period| period << octave), at));
+            total += weight;
+            weight *= self.gain;
+        }
+        sum / total
+    }
+}
+
+/// One octave of gradient noise at texture coordinates, about −1 to 1.
+fn octave_at(gradients: &[u8], periods: [u32; 2], [u, v]: [f32; 2]) -> f32 {
     let [(columns, s), (rows, t)] =
         [(u, periods[0]), (v, periods[1])].map(|(at, period)| corners(at, period));
     let corner = |dx: usize, dy: usize| {
-        let word = word(key, [columns[dx], rows[dy]]);
-        let (s, t) = (s - dx as f32, t - dy as f32);
-        // One of eight gradient directions, of about equal length.
-        let [long, short] = if word & 4 == 0 { [s, t] } else { [t, s] };
-        let signed = |value: f32, bit: u32| if word & bit == 0 { value } else { -value };
-        signed(long, 1) * 1.3 + signed(short, 2) * 0.55
+        let gradient = usize::from(gradients[(rows[dy] * periods[0] + columns[dx]) as usize]);
+        (s - dx as f32) * ALONG_U[gradient] + (t - dy as f32) * ALONG_V[gradient]
     };
     let fade = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let (fade_s, fade_t) = (fade(s), fade(t));
     let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
     mix(mix(corner(0, 0), corner(1, 0), fade_s), mix(corner(0, 1), corner(1, 1), fade_s), fade_t)
-}
-
-/// Sum of `count` octaves of gradient noise, about −1 to 1. From one octave to the next, the frequency doubles and the weight is
-/// multiplied by `gain`.
-pub fn octaves(key: u32, periods: [u32; 2], count: u32, gain: f32, at: [f32; 2]) -> f32 {
-    let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
-    for octave in 0..count {
-        sum += weight * gradient(key + octave, periods.map(|period| period << octave), at);
-        total += weight;
-        weight *= gain;
-    }
-    sum / total
-}
-
-/// Sum of `count` octaves of noise with sharp ridges, 0 to 1.
-pub fn ridges(key: u32, period: u32, count: u32, at: [f32; 2]) -> f32 {
-    let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
-    for octave in 0..count {
-        let ridge = 1.0 - gradient(key + octave, [period << octave; 2], at).abs().min(1.0);
-        sum += weight * ridge * ridge;
-        total += weight;
-        weight *= 0.55;
-    }
-    sum / total
 }
 
 /// The cell of Worley noise that contains a given point. Every lattice square has one random feature point. All points with the

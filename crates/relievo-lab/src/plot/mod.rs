@@ -2,7 +2,6 @@
 //! them.
 
 use axis::Axis;
-use image::imageops::FilterType;
 use image::{DynamicImage, RgbImage, RgbaImage};
 use picture::Picture;
 use plotters::backend::BitMapBackend;
@@ -91,7 +90,7 @@ pub fn grid(title: &str, charts: &[Chart], columns: usize, size: [u32; 2]) -> Re
         .draw(title, rows, columns, BitMapBackend::with_buffer(&mut pixels, (width, height)))
         .map_err(|error| failed(error.to_string()))?;
     let fine = RgbImage::from_raw(width, height, pixels).ok_or_else(|| failed("has no pixels".to_owned()))?;
-    let picture = image::imageops::resize(&fine, size[0], size[1], FilterType::Triangle);
+    let picture = image::imageops::thumbnail(&fine, size[0], size[1]);
     Ok(DynamicImage::ImageRgb8(picture).into_rgba8())
 }
 

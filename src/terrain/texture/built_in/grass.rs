@@ -1,11 +1,8 @@
 //! Grass texture, seen from above: blades grow from random places, and the highest blade is visible.
 
-use crate::terrain::texture::TEXTURE_SIZE;
-use crate::terrain::texture::field::{made, mixed, texels as shaded};
-use crate::terrain::texture::noise::{octaves, random, smoothstep};
+use crate::terrain::texture::field::{EDGE, made, mixed, texels as shaded};
+use crate::terrain::texture::noise::{Noise, random, smoothstep};
 
-/// Number of texels along an edge of the texture.
-const EDGE: usize = TEXTURE_SIZE as usize;
 /// Number of grass blades in the texture.
 const BLADES: u32 = 30_000;
 
@@ -18,8 +15,9 @@ struct Seen {
 
 /// Generates the texels of the grass texture.
 pub fn grass() -> Vec<u8> {
+    let (roughness, tufts) = (Noise::new(201, [24, 24], 4, 0.6), Noise::new(223, [11, 11], 3, 0.5));
     let soil = made(|at| {
-        let rough = octaves(201, [24, 24], 4, 0.6, at);
+        let rough = roughness.at(at);
         Seen {
             height: 0.08 + 0.08 * rough,
             color: mixed([0.17, 0.16, 0.09], [0.25, 0.23, 0.13], 0.5 + rough),
@@ -27,17 +25,17 @@ pub fn grass() -> Vec<u8> {
     });
     let mut seen = soil;
     for blade in 0..BLADES {
-        grow(&mut seen, blade);
+        grow(&mut seen, &tufts, blade);
     }
     let heights: Vec<f32> = seen.iter().map(|seen| seen.height.clamp(0.0, 1.0)).collect();
     shaded(&heights, seen.iter().map(|seen| seen.color).collect(), 0.75)
 }
 
 /// Draws one blade of grass, which bends to one side.
-fn grow(seen: &mut [Seen], blade: u32) {
+fn grow(seen: &mut [Seen], tufts: &Noise, blade: u32) {
     let number = |use_of: u32| random(211 + use_of, [blade, 0]);
     let root = [number(0), number(1)];
-    let tuft = octaves(223, [11, 11], 3, 0.5, root);
+    let tuft = tufts.at(root);
     let length = (9.0 + 17.0 * number(2)) * (1.0 + 0.5 * tuft);
     let tall = (0.35 + 0.45 * number(3)) * (1.0 + 0.35 * tuft);
     // Random direction, computed without sines: a random point in a square.

@@ -2,7 +2,7 @@
 
 use super::apart;
 use crate::terrain::texture::field::{made, mixed, ramp, stretched, texels as shaded};
-use crate::terrain::texture::noise::{cell, gradient, octaves, random, smoothstep};
+use crate::terrain::texture::noise::{Noise, cell, random, smoothstep};
 
 /// The stone at a point of the texture, if there is one.
 struct Stone {
@@ -14,12 +14,9 @@ struct Stone {
 
 /// Stones of one size at texture coordinates `at`. The texture has `count` places for stones along each edge. The fraction
 /// `dense` of these places has a stone.
-fn stone(key: u32, count: u32, dense: f32, at: [f32; 2]) -> Stone {
+fn stone(key: u32, count: u32, dense: f32, bends: &[Noise; 2], at: [f32; 2]) -> Stone {
     let bend = 0.16 / count as f32;
-    let bent = [
-        at[0] + bend * gradient(key + 1, [2 * count; 2], at),
-        at[1] + bend * gradient(key + 2, [2 * count; 2], at),
-    ];
+    let bent = [at[0] + bend * bends[0].at(at), at[1] + bend * bends[1].at(at)];
     let cell = cell(key, [count; 2], bent);
     let number = |use_of: u32| random(key + 3, [cell.word, use_of]);
     let gap = cell.distances[1] - cell.distances[0];
@@ -31,6 +28,11 @@ fn stone(key: u32, count: u32, dense: f32, at: [f32; 2]) -> Stone {
     Stone { height, look: [number(8), number(9)] }
 }
 
+/// The noise that bends the edges of stones.
+fn bends(key: u32, count: u32) -> [Noise; 2] {
+    [1, 2].map(|axis| Noise::new(key + axis, [2 * count; 2], 1, 1.0))
+}
+
 /// Colour of a stone. `look` is its brightness and hue, 0 to 1; `tone` is added to the brightness.
 fn rock(look: [f32; 2], tone: f32) -> [f32; 3] {
     let grey = ramp(&[[0.36, 0.34, 0.32], [0.52, 0.50, 0.47], [0.66, 0.64, 0.60]], look[0] + tone);
@@ -39,12 +41,15 @@ fn rock(look: [f32; 2], tone: f32) -> [f32; 3] {
 
 /// Generates the texels of a slope of broken stones, large ones over small ones.
 pub fn scree() -> Vec<u8> {
+    let grains = Noise::new(301, [60, 60], 3, 0.6);
+    let layers = [(311, 44, 0.9, 0.36), (331, 24, 0.8, 0.62), (351, 13, 0.55, 1.0)];
+    let layers = layers.map(|layer| (layer, bends(layer.0, layer.1)));
     let (heights, colors) = apart(made(|at| {
-        let grain = octaves(301, [60, 60], 3, 0.6, at);
+        let grain = grains.at(at);
         let mut found =
             (0.06 + 0.03 * grain, [0.27, 0.25, 0.22].map(|channel| channel * (1.0 + 0.3 * grain)));
-        for (key, count, dense, size) in [(311, 44, 0.9, 0.36), (331, 24, 0.8, 0.62), (351, 13, 0.55, 1.0)] {
-            let stone = stone(key, count, dense, at);
+        for ((key, count, dense, size), bends) in &layers {
+            let stone = stone(*key, *count, *dense, bends, at);
             let height = size * stone.height;
             if stone.height > 0.05 && height > found.0 {
                 found = (height + 0.02 * grain, rock(stone.look, 0.16 * grain + 0.15 * (stone.height - 0.6)));
@@ -57,19 +62,21 @@ pub fn scree() -> Vec<u8> {
 
 /// Generates the texels of soil: crumbs of earth with a few stones.
 pub fn soil() -> Vec<u8> {
+    let (crumbling, damps) = (Noise::new(401, [14, 14], 6, 0.68), Noise::new(421, [7, 7], 3, 0.5));
+    let layers = [(431, 64, 0.12, 0.45), (451, 29, 0.06, 0.7)].map(|layer| (layer, bends(layer.0, layer.1)));
     let (heights, colors) = apart(made(|at| {
-        let crumbs = octaves(401, [14, 14], 6, 0.68, at);
+        let crumbs = crumbling.at(at);
         let clod = cell(411, [37; 2], at);
         let lump = 1.0 - clod.distances[0];
-        let damp = octaves(421, [7, 7], 3, 0.5, at);
+        let damp = damps.at(at);
         let earth = 0.30 + 0.26 * crumbs + 0.14 * lump;
         let color = ramp(
             &[[0.19, 0.14, 0.10], [0.33, 0.25, 0.18], [0.45, 0.36, 0.27]],
             0.45 + 0.5 * crumbs + 0.2 * (lump - 0.6) - 0.12 * damp,
         );
         let mut found = (earth, color);
-        for (key, count, dense, size) in [(431, 64, 0.12, 0.45), (451, 29, 0.06, 0.7)] {
-            let stone = stone(key, count, dense, at);
+        for ((key, count, dense, size), bends) in &layers {
+            let stone = stone(*key, *count, *dense, bends, at);
             let height = 0.12 + size * stone.height;
             if stone.height > 0.05 && height > found.0 {
                 found = (height, mixed(rock(stone.look, 0.1 * crumbs - 0.1), color, 0.5));
