@@ -219,7 +219,7 @@ def main() -> None:
                 refused += 1
             else:
                 unseen.append((fault, tests))
-        print(f"{len(unseen)} faults are left to the test programs", flush=True)
+        print(f"{len(unseen)} faults are left to the test programs:", *(fault for fault, _ in unseen), sep="\n    ", flush=True)
         for fault, tests in unseen:
             by = seen_by(fault, tests, all_programs)
             if by is None:
