@@ -70,8 +70,8 @@ fn along_rows(window: u32, x: i32, rows: vec4<i32>) -> vec4<i32> {
         coarse_points(window, vec4<i32>(x + 2), rows), coarse_points(window, vec4<i32>(x + 3), rows));
 }
 
-// Writes the fine points that belong to four coarse points, of which `thread` is the first: the points themselves, the points on the
-// edges to the right and below, and the centers.
+// Writes the fine points of four coarse points of a column, from `thread` on. A coarse point has four fine points: itself, those on the
+// edges to the right and below, and the center.
 fn write_points(window: u32, thread: vec2<i32>) {
     let shift = origins[window] & vec2<i32>(1);
     let x = vec4<i32>(thread.x + 3);

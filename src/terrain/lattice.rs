@@ -58,8 +58,9 @@ impl Given<'_> {
 pub(crate) struct Subdivision<'a> {
     pub coarse: [Span; 2],
     pub fine: [Span; 2],
-    /// Ranges of the random offsets, and with smooth interpolation those of points on edges.
+    /// Range of the random offsets; with smooth interpolation, those of the centers of cells.
     pub range: u32,
+    /// Range of the random offsets of points on edges, with smooth interpolation.
     pub edge_range: u32,
     spacing: i64,
     features: &'a Features,

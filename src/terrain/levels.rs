@@ -59,19 +59,19 @@ pub(crate) use level_pass;
 #[derive(Debug, Clone)]
 pub(crate) struct LevelStage {
     pub kernel: Kernel,
-    /// Number of threads along a row of a window.
+    /// Number of threads along an edge of a window, if each had one row.
     pub threads: fn(&Level) -> u32,
     /// Number of rows of a thread.
     pub rows: u32,
 }
 
-/// Number of threads along an edge of a window that compute the four fine points of a coarse point in each of their rows. There is one
-/// more than half the points, because a window may start anywhere in a cell.
+/// Number of threads for the coarse points along an edge of a window: one more than half its fine points, because a window may start
+/// anywhere in a cell.
 pub(crate) fn point_threads(level: &Level) -> u32 {
     level.fine_width / 2 + 1
 }
 
-/// The same for the center of a coarse cell that has another cell on every side.
+/// Number of threads for the centers along an edge of a window.
 pub(crate) fn center_threads(level: &Level) -> u32 {
     centers(level.coarse_width)
 }
