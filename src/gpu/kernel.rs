@@ -123,10 +123,9 @@ impl Layouts {
             let reason = format!("resources of {} for {}", shader.name, self.shader.name);
             return Err(GpuError::Internal { reason });
         }
-        let entries: Vec<_> = resources
-            .iter()
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
-            .collect();
+        let resources = resources.iter().cloned();
+        let entries: Vec<_> =
+            resources.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
         gpu.scoped(|| {
             gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(shader.name),
@@ -167,12 +166,8 @@ fn layouts(gpu: &Gpu, shader: &Shader) -> Result<Vec<wgpu::BindGroupLayout>, Gpu
     gpu.scoped(|| {
         (0..groups)
             .map(|group| {
-                let entries: Vec<_> = shader
-                    .bindings
-                    .iter()
-                    .filter(|binding| binding.group == group)
-                    .map(layout_entry)
-                    .collect();
+                let bindings = shader.bindings.iter().filter(|binding| binding.group == group);
+                let entries: Vec<_> = bindings.map(layout_entry).collect();
                 gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                     label: Some(shader.name),
                     entries: &entries,

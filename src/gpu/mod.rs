@@ -44,12 +44,13 @@ pub(crate) use kernel::{Layouts, pass, rows_of_workgroups};
 pub use memory::Memory;
 pub(crate) use pending::PendingUploads;
 pub use readback_ring::ReadbackRing;
+pub(crate) use shared::{RenderProgram, Shared};
 pub(crate) use upload::StagingStream;
 pub use upload::{Staged, StagingRing, Upload};
 
 use errors::Errors;
 use identity::Identity;
-use shared::{Program, Shared};
+use shared::Program;
 
 /// A device and its queue, with the adapter's properties that relievo uses. Clones share the device and the pipelines compiled
 /// on it.
@@ -62,6 +63,8 @@ pub struct Gpu {
     errors: Errors,
     memory: Arc<Memory>,
     kernels: Arc<Shared<Program, Kernel>>,
+    /// Render pipelines of the crate's own shaders.
+    pub(crate) pipelines: Arc<Shared<RenderProgram, wgpu::RenderPipeline>>,
     /// Deferred uploads of data that never changes; `None` unless the device is deferring.
     pending: Option<PendingUploads>,
 }
@@ -113,9 +116,9 @@ impl Gpu {
 
     fn new(device: wgpu::Device, queue: wgpu::Queue, info: &wgpu::AdapterInfo) -> Self {
         let summary = AdapterSummary::of(info);
-        let (errors, memory, kernels) = Default::default();
+        let (errors, memory, kernels, pipelines) = Default::default();
         let identity = Identity::of(&device);
-        Self { device, queue, identity, summary, errors, memory, kernels, pending: None }
+        Self { device, queue, identity, summary, errors, memory, kernels, pipelines, pending: None }
     }
 
     /// Whether another handle belongs to the same device.

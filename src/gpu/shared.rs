@@ -1,4 +1,4 @@
-//! A cache of the pipelines that were compiled on a device. All passes share it.
+//! Caches of the pipelines that were compiled on a device. All passes and renderers share them.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -47,6 +47,24 @@ impl Program {
         let constants = constants.iter().map(|(name, value)| (*name, value.to_bits())).collect();
         Self { shader: shader.name, constants }
     }
+}
+
+/// Key of a render pipeline: everything from which it is compiled, except the layouts, which depend on the shader alone.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct RenderProgram {
+    /// Unique name of the shader.
+    pub shader: String,
+    /// Entry points. The fragment stage is `None` if only depth is written and nothing is cut out.
+    pub vertex: String,
+    pub fragment: Option<String>,
+    /// Name of each override constant, and the bits of its value.
+    pub constants: Vec<(&'static str, u64)>,
+    /// The side of triangles that is culled; `None` if both sides are drawn.
+    pub cull: Option<wgpu::Face>,
+    pub targets: Vec<Option<wgpu::ColorTargetState>>,
+    pub depth: Option<wgpu::DepthStencilState>,
+    /// Number of samples per pixel.
+    pub samples: u32,
 }
 
 #[cfg(test)]

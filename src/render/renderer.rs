@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use super::format::TargetFormat;
 use super::layer::Layer;
 use super::shading::Shading;
-use crate::gpu::{Gpu, foreign};
+use crate::gpu::{Gpu, Shared, foreign};
 use crate::lod::transition::Transition;
 use crate::lod::{OBJECT_LISTS, SceneDraw};
 use crate::scene::drawable::{Drawable, DrawnObject, DrawnView, Part, SortedDraws, SortedPart};
@@ -65,7 +65,7 @@ pub struct Renderer {
     casts: bool,
     /// Compiled pipelines of parts. Several keys may share one pipeline.
     pipelines: HashMap<PipelineKey, wgpu::RenderPipeline>,
-    compiled: HashMap<PipelineSource, wgpu::RenderPipeline>,
+    compiled: Shared<PipelineSource, wgpu::RenderPipeline>,
 }
 
 impl Renderer {
@@ -79,13 +79,13 @@ impl Renderer {
         format.check_on(gpu.device())?;
         let layouts = SceneLayouts::new(gpu)?;
         let (gpu, format) = (gpu.clone(), format.clone());
-        let (pipelines, compiled) = (HashMap::new(), HashMap::new());
+        let (pipelines, compiled) = Default::default();
         Ok(Self { gpu, format, layouts, shading: None, casts: false, pipelines, compiled })
     }
 
     /// The same renderer for shadow maps, where triangles stop light from both sides. Nothing is compiled yet.
     pub(super) fn casting(self) -> Self {
-        Self { casts: true, pipelines: HashMap::new(), compiled: HashMap::new(), ..self }
+        Self { casts: true, pipelines: HashMap::new(), compiled: Shared::default(), ..self }
     }
 
     /// The same renderer with the caller's shading in every colour pipeline. Nothing is compiled yet.
@@ -113,7 +113,7 @@ impl Renderer {
     pub fn with_shading(self, source: &str, layout: Option<&wgpu::BindGroupLayout>) -> Result<Self, Error> {
         let shading = Shading::new(source, layout)?;
         shading.check_layout(&self.gpu, &self.format, &self.layouts)?;
-        let (pipelines, compiled) = (HashMap::new(), HashMap::new());
+        let (pipelines, compiled) = Default::default();
         Ok(Self { shading: Some(shading), pipelines, compiled, ..self })
     }
 
@@ -252,12 +252,8 @@ impl Renderer {
             return Ok(());
         }
         let source = key.source(&self.format, self.casts);
-        let pipeline = match self.compiled.get(&source) {
-            Some(pipeline) => pipeline.clone(),
-            None => source.compiled(&self.gpu, &self.format, &self.layouts, self.shading.as_ref())?,
-        };
-        self.compiled.insert(source, pipeline.clone());
-        self.pipelines.insert(key, pipeline);
+        let compile = || source.compiled(&self.gpu, &self.format, &self.layouts, self.shading.as_ref());
+        self.pipelines.insert(key, self.compiled.get(source.clone(), compile)?);
         Ok(())
     }
 

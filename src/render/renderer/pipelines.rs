@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, RenderProgram};
 use crate::render::format::TargetFormat;
 use crate::render::layer::Layer;
 use crate::render::output::OutputProgram;
@@ -66,9 +66,8 @@ impl PipelineKey {
             (false, false) => "vertex",
         };
         let constants = self.part.constants(layer.shown(), self.is_shadowed, format.is_reversed(), self.fade);
-        PipelineSource {
-            layer,
-            program: self.part.program().clone(),
+        let key = RenderProgram {
+            shader: self.part.program().name().to_owned(),
             vertex: format!("{PREFIX}{vertex}"),
             // A pass with colour attachments needs a pipeline with a fragment stage.
             fragment: (!is_plain_depth || !format.color.is_empty()).then_some(entry),
@@ -79,7 +78,11 @@ impl PipelineKey {
                 (false, false) => Some(wgpu::Face::Back),
                 (false, true) => Some(wgpu::Face::Front),
             },
-        }
+            targets: format.targets(layer),
+            depth: format.depth_state(layer),
+            samples: format.samples,
+        };
+        PipelineSource { layer, program: self.part.program().clone(), key }
     }
 }
 
@@ -88,17 +91,12 @@ impl PipelineKey {
 pub(super) struct PipelineSource {
     layer: Layer,
     program: Program,
-    /// Entry points. The fragment stage is `None` if only depth is written and nothing is cut out.
-    vertex: String,
-    fragment: Option<String>,
-    /// Override constants of the shader: name, and bits of the `f64` value.
-    constants: Vec<(&'static str, u64)>,
-    /// The side of triangles that is culled; `None` if both sides are drawn.
-    cull: Option<wgpu::Face>,
+    key: RenderProgram,
 }
 
 impl PipelineSource {
-    /// Compiles the pipeline, with the caller's shading if there is one.
+    /// Compiles the pipeline, with the caller's shading if there is one. If the text is the crate's alone, returns the pipeline
+    /// that this device compiled before.
     ///
     /// # Errors
     /// Errors of the driver's shader compiler, and errors for a format that exceeds the device's limits.
@@ -110,52 +108,48 @@ impl PipelineSource {
         shading: Option<&Shading>,
     ) -> Result<wgpu::RenderPipeline, GpuError> {
         let shading = shading.filter(|_| self.layer.is_shaded());
+        let output = format.output().filter(|_| self.layer == Layer::Own);
         let groups = layouts.of(gpu, &self.program)?;
         let own = shading.and_then(|shading| shading.layout.as_ref());
         let groups: Vec<_> = groups.iter().chain(own).map(Some).collect();
-        let text = match format.output().filter(|_| self.layer == Layer::Own) {
-            Some(output) => output.beside(&self.program).into(),
-            None => Cow::from(self.program.text()),
-        };
-        let text = match shading {
-            Some(shading) => shading.text(&text).into(),
-            None => text,
-        };
-        gpu.scoped(|| self.compile(gpu, format, text, &groups))
+        let text =
+            output.map_or(Cow::from(self.program.text()), |output| output.beside(&self.program).into());
+        let text = shading.map(|shading| shading.text(&text).into()).unwrap_or(text);
+        let is_ours = matches!(text, Cow::Borrowed(_)) && !matches!(self.program, Program::Own(_));
+        let compile = || gpu.scoped(|| self.compile(gpu, text, &groups));
+        if is_ours { gpu.pipelines.get(self.key.clone(), compile) } else { compile() }
     }
 
     fn compile(
         &self,
         gpu: &Gpu,
-        format: &TargetFormat,
         text: Cow<'_, str>,
         groups: &[Option<&wgpu::BindGroupLayout>],
     ) -> wgpu::RenderPipeline {
-        let (device, label) = (gpu.device(), Some(self.program.name()));
+        let (device, label, key) = (gpu.device(), Some(self.key.shader.as_str()), &self.key);
         let source = wgpu::ShaderSource::Wgsl(text);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
         let constants: Vec<_> =
-            self.constants.iter().map(|(name, bits)| (*name, f64::from_bits(*bits))).collect();
+            key.constants.iter().map(|(name, bits)| (*name, f64::from_bits(*bits))).collect();
         let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
-        let targets = format.targets(self.layer);
         let layout = wgpu::PipelineLayoutDescriptor { label, bind_group_layouts: groups, immediate_size: 0 };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label,
             layout: Some(&device.create_pipeline_layout(&layout)),
             vertex: wgpu::VertexState {
                 module: &module,
-                entry_point: Some(&self.vertex),
+                entry_point: Some(&key.vertex),
                 compilation_options: options(),
                 buffers: &[Some(INSTANCES)],
             },
-            primitive: wgpu::PrimitiveState { cull_mode: self.cull, ..Default::default() },
-            depth_stencil: format.depth_state(self.layer),
-            multisample: wgpu::MultisampleState { count: format.samples, ..Default::default() },
-            fragment: self.fragment.as_deref().map(|entry| wgpu::FragmentState {
+            primitive: wgpu::PrimitiveState { cull_mode: key.cull, ..Default::default() },
+            depth_stencil: key.depth.clone(),
+            multisample: wgpu::MultisampleState { count: key.samples, ..Default::default() },
+            fragment: key.fragment.as_deref().map(|entry| wgpu::FragmentState {
                 module: &module,
                 entry_point: Some(entry),
                 compilation_options: options(),
-                targets: &targets,
+                targets: &key.targets,
             }),
             multiview_mask: None,
             cache: None,
