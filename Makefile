@@ -1,4 +1,4 @@
-# make demo · make test · make bench · make bless · make lint · make view · make web · make serve
+# make demo · make test · make bench · make bless · make lint · make shaders · make view · make web · make serve
 # make test-page · make test-s3 · make looks · make session
 #
 # Each target sets up what it needs: see scripts/setup.sh.
@@ -13,7 +13,7 @@ PAGE ?= target/page
 PORT ?= 8080
 SCENE ?= examples/scenes/ruins.json
 
-.PHONY: demo test test-page test-s3 bench bless lint view web serve looks session setup adapter browser wasm
+.PHONY: demo test test-page test-s3 bench bless lint shaders view web serve looks session setup adapter browser wasm
 
 demo: adapter
 	$(CARGO) run --bin relievo -- demo --out $(OUT)
@@ -21,6 +21,7 @@ demo: adapter
 
 test: browser
 	$(CARGO) test
+	$(CARGO) test -p relievo-shaders
 
 # The viewer's page in Chromium. It compiles the page first, unless RELIEVO_PAGE is the folder that `make web` wrote.
 test-page: browser
@@ -59,6 +60,10 @@ bench: setup
 # The only way to write a golden.
 bless: adapter
 	RELIEVO_BLESS=1 $(CARGO) test --test golden --test demo
+
+# The generated shaders, after a change of kernels/, wgsl/ or crates/relievo-shaders/.
+shaders: setup
+	$(CARGO) run -p relievo-shaders
 
 lint: setup
 	$(CARGO) fmt --all --check

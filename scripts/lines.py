@@ -66,7 +66,7 @@ def main() -> None:
         ["git", "-C", root, "ls-files"], check=True, capture_output=True, text=True
     ).stdout.split()
     sources = [Path(file) for file in files if (root / file).is_file()]
-    outside = {"tests", "benches", "examples"}
+    outside = {"tests", "benches", "examples", "generated"}
     sources = [file for file in sources if not outside & set(file.parts)]
     tests: set[Path] = set()
     counts = {

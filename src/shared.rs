@@ -1,4 +1,4 @@
-//! Structs and constants that kernels and host share. `build.rs` generates them from the composed WGSL, one Rust module per WGSL
+//! Structs and constants that kernels and host share. `relievo-shaders` generates them from the composed WGSL, one Rust module per WGSL
 //! file.
 #![allow(dead_code, reason = "generated for every kernel alike")]
 

@@ -1,4 +1,4 @@
-//! Compute pipelines and bind groups. Their layouts come from the manifest that `build.rs` writes.
+//! Compute pipelines and bind groups. Their layouts come from the manifest that `relievo-shaders` generates.
 
 use super::shaders::{Binding, BindingKind, Shader, Stage};
 use super::{Gpu, GpuError, Program};

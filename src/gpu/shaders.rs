@@ -1,4 +1,4 @@
-//! The flat, validated WGSL of every pass, with a description of its bindings. `build.rs` writes both.
+//! The flat, validated WGSL of every pass, with a description of its bindings. `relievo-shaders` generates both.
 
 /// A stage of a pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]

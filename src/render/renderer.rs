@@ -23,7 +23,8 @@ use crate::{Error, InputError};
 use pipelines::{PipelineKey, PipelineSource};
 pub use scene_pass::ScenePass;
 
-/// Draws scenes on targets of one format. Each further format needs a renderer of its own, and so does each shadow map.
+/// Draws scenes on targets of one format. Each further format needs a renderer of its own, and so does each shadow map. Renderers of
+/// one device share their pipelines, except those with text of the caller.
 ///
 /// # Examples
 ///

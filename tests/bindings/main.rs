@@ -1,17 +1,12 @@
 //! What generated bindings refuse: a buffer that is forgotten, and one of another element type, do not compile.
 //!
-//! The bindings are private, so they are compiled here as a crate of their own: the files that `build.rs` wrote and
+//! The bindings are private, so they are compiled here as a crate of their own: the files in `generated/` and
 //! `src/gpu/bind.rs`, with empty types in place of the device's and of wgpu's, glam's and bytemuck's. And what they check on a device:
 //! lengths, and the widths of packed words.
-
-#[path = "../../build/packed.rs"]
-#[allow(dead_code, reason = "the build uses the rest")]
-mod packed;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use packed::packed;
 use relievo::Error;
 use relievo::gpu::Buffer;
 use relievo::ops::lod::sorted::{SortedBuffers, SortedPass};
@@ -85,7 +80,7 @@ fn vectors() -> String {
 /// The names of shaders that the bindings mention.
 fn shaders() -> String {
     let bindings =
-        std::fs::read_to_string(Path::new(OUT_DIR).join("bindings.rs")).expect("written by build.rs");
+        std::fs::read_to_string(Path::new(OUT_DIR).join("bindings.rs")).expect("copied by build.rs");
     let mut names: Vec<&str> = bindings
         .split("shaders::")
         .skip(1)
@@ -168,13 +163,4 @@ fn packed_words_give_back_their_fields() {
 )]
 fn a_value_beyond_its_field_is_refused() {
     decision_word(1, 0, 8, 0, 0);
-}
-
-#[test]
-fn fields_that_a_word_has_no_room_for_are_refused() {
-    let refused = |comment: &str| packed(&format!("// packed {comment}")).err().expect("refused");
-    assert_eq!(refused("Word: a 20, b 13"), "packed Word: a 20, b 13: has 33 bits, and must have at most 32");
-    assert!(refused("Word: a 0").contains("a width is a number from 1 to 32"));
-    assert!(refused("Word: a").contains("a field needs a width"));
-    assert!(refused("a 3").contains("needs a name"));
 }

@@ -44,10 +44,9 @@ impl Bindings {
     }
 
     /// Writes `shared.rs` and `bindings.rs` to the folder `out`.
-    pub fn write(&self, out: &Path) {
+    pub fn texts(&self) -> [(String, String); 2] {
         let shared = nested(&self.shared.iter().map(|(path, items)| (path.clone(), joined(items))).collect());
-        std::fs::write(out.join("shared.rs"), shared).expect("OUT_DIR is writable");
-        std::fs::write(out.join("bindings.rs"), nested(&self.shaders)).expect("OUT_DIR is writable");
+        [("shared.rs".to_owned(), shared), ("bindings.rs".to_owned(), nested(&self.shaders))]
     }
 }
 
@@ -323,7 +322,7 @@ impl ShaderBindings<'_> {
             (_, TypeInner::Sampler { .. }) => {
                 ("&'a wgpu::Sampler".to_owned(), format!("wgpu::BindingResource::Sampler(self.{name})"))
             }
-            (space, _) => self.refuse(&format!("binding `{name}` in {space:?}: teach build/bindings.rs")),
+            (space, _) => self.refuse(&format!("binding `{name}` in {space:?}: teach relievo-shaders")),
         }
     }
 }

@@ -40,7 +40,7 @@ fn imported_file(root: &Path, importing: &Path, import: &str) -> PathBuf {
         .and_then(|import| import.strip_prefix("package::")?.rsplit_once("::"))
         .map(|(path, _)| path.replace("::", "/"));
     let path =
-        path.unwrap_or_else(|| panic!("{}: teach build/modules.rs `import {import}`", importing.display()));
+        path.unwrap_or_else(|| panic!("{}: teach relievo-shaders `import {import}`", importing.display()));
     root.join(path).with_extension("wgsl")
 }
 

@@ -41,7 +41,7 @@ impl ShaderBindings<'_> {
                 let name = of.name.clone().unwrap_or_default();
                 self.structure(&name, members, *span, used, shared)
             }
-            other => self.refuse(&format!("{other:?} in a buffer: teach build/bindings.rs")),
+            other => self.refuse(&format!("{other:?} in a buffer: teach relievo-shaders")),
         }
     }
 
@@ -84,7 +84,7 @@ impl ShaderBindings<'_> {
         format!("crate::shared::{}::{name}", path.replace('/', "::"))
     }
 
-    /// Fails the build if a struct has padding bytes. The host casts elements of buffers to and from bytes, so every byte must
+    /// Refuses a struct with padding bytes. The host casts elements of buffers to and from bytes, so every byte must
     /// belong to a member.
     fn refuse_holes(&self, name: &str, members: &[StructMember], span: u32) {
         let module = &self.shader.module;
@@ -104,7 +104,7 @@ impl ShaderBindings<'_> {
         }
     }
 
-    /// Fails the build if an array has padding bytes between its elements, because the host casts whole buffers to bytes.
+    /// Refuses an array with padding bytes between its elements, because the host casts whole buffers to bytes.
     fn refuse_gaps(&self, base: Handle<Type>, stride: u32) {
         let module = &self.shader.module;
         let size = module.types[base].inner.size(module.to_ctx());

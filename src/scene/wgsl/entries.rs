@@ -1,5 +1,5 @@
-//! Generates WGSL entry points that draw a kind of object into render outputs. For the crate's own kinds this happens at build
-//! time; for callers' kinds it happens at run time.
+//! Generates WGSL entry points that draw a kind of object into render outputs. For the crate's own kinds, `relievo-shaders`
+//! does so; for callers' kinds, the crate does at run time.
 //!
 //! A kind `mesh` exports the WGSL functions `mesh_place`, `mesh_surface` and, unless it moves as a rigid body,
 //! `mesh_last_position` (`wgsl/render/scene_kind.wgsl`). The crate's own kinds declare their properties in a line such as `//

@@ -59,7 +59,7 @@ impl Sources {
         })
     }
 
-    /// Packed words that all files declare, each with its module's path. An invalid declaration fails the build.
+    /// Packed words that all files declare, each with its module's path. An invalid declaration is refused.
     pub fn packed(&self, root: &Path) -> Vec<(String, Packed<'_>)> {
         let mut all = Vec::new();
         for (file, text) in &self.0 {

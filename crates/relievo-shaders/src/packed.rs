@@ -1,12 +1,13 @@
 //! Words that pack several fields. They are declared by comments such as `// packed Decision: list 8, morph 12`, which give each
 //! field's width in bits, lowest field first. In WGSL and in Rust, `decision_word(list, morph)` packs a word, and
-//! `decision_list(word)` and `decision_morph(word)` read its fields. A sum of widths above 32 bits fails the build. On the host,
+//! `decision_list(word)` and `decision_morph(word)` read its fields. A sum of widths above 32 bits is refused. On the host,
 //! a value that exceeds its field panics.
 
 use std::fmt::Write as _;
 
 /// A packed word: its name, and the name, first bit and width of every field.
 pub struct Packed<'a> {
+    /// Name of the word.
     pub name: String,
     comment: &'a str,
     fields: Vec<Field<'a>>,
@@ -141,4 +142,21 @@ fn snake(name: &str) -> String {
         text.extend(letter.to_lowercase());
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::packed;
+
+    #[test]
+    fn fields_that_a_word_has_no_room_for_are_refused() {
+        let refused = |comment: &str| packed(&format!("// packed {comment}")).err().expect("refused");
+        assert_eq!(
+            refused("Word: a 20, b 13"),
+            "packed Word: a 20, b 13: has 33 bits, and must have at most 32"
+        );
+        assert!(refused("Word: a 0").contains("a width is a number from 1 to 32"));
+        assert!(refused("Word: a").contains("a field needs a width"));
+        assert!(refused("a 3").contains("needs a name"));
+    }
 }
