@@ -7,7 +7,6 @@ use super::mesh::{mesh, painted, placements};
 use super::stage::{Canvas, FORMAT, SIZE, Stage, differing, drawn, gpu, renderer, view};
 use crate::Error;
 use crate::asset::material::Alpha;
-use crate::gpu::Gpu;
 use crate::render::renderer::pipelines::PipelineKey;
 use crate::render::{DepthFormat, TargetFormat};
 use crate::render::{Layer, Renderer};
@@ -96,13 +95,13 @@ fn every_kind_of_pipeline_compiles_for_every_format() {
 
 #[test]
 fn renderers_of_a_device_share_pipelines_without_callers_text() {
-    let (gpu, other) = (gpu(), gpu());
+    let gpu = gpu();
     let part = Specialization::mesh(PartState::default(), true, false, false);
-    let plain = |gpu: &Gpu| Renderer::new(gpu, &TargetFormat::new(FORMAT)).expect("a format");
+    let plain = || Renderer::new(&gpu, &TargetFormat::new(FORMAT)).expect("a format");
     let shaded = |color: &str| {
         let text =
             format!("fn shade(surface: Surface, view: View) -> vec4<f32> {{ return vec4<f32>({color}); }}");
-        plain(&gpu).with_shading(&text, None).expect("valid")
+        plain().with_shading(&text, None).expect("valid")
     };
     let pipeline = |mut renderer: Renderer, part: &Specialization, layer| {
         let key = PipelineKey::new(layer, part, false);
@@ -110,19 +109,18 @@ fn renderers_of_a_device_share_pipelines_without_callers_text() {
         renderer.pipelines[&key].clone()
     };
     let color = |renderer| pipeline(renderer, &part, Layer::Color);
-    let first = color(plain(&gpu));
-    assert!(color(plain(&gpu)) == first);
-    assert!(pipeline(shaded("1.0"), &part, Layer::Depth) == pipeline(plain(&gpu), &part, Layer::Depth));
+    let first = color(plain());
+    assert!(color(plain()) == first);
+    assert!(pipeline(shaded("1.0"), &part, Layer::Depth) == pipeline(plain(), &part, Layer::Depth));
     let format = TargetFormat::new(FORMAT).with_samples(4);
     let cut_out = PartState { cut_out: true, ..PartState::default() };
     let others = [
         color(Renderer::new(&gpu, &format).expect("a format")),
-        color(plain(&other)),
-        color(plain(&gpu).casting()),
+        color(plain().casting()),
         color(shaded("1.0")),
         color(shaded("0.5")),
-        pipeline(plain(&gpu), &part, Layer::Depth),
-        pipeline(plain(&gpu), &Specialization::mesh(cut_out, true, false, false), Layer::Color),
+        pipeline(plain(), &part, Layer::Depth),
+        pipeline(plain(), &Specialization::mesh(cut_out, true, false, false), Layer::Color),
     ];
     for (at, pipeline) in others.iter().enumerate() {
         assert!(*pipeline != first && !others[..at].contains(pipeline), "{at}");
