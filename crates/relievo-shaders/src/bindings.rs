@@ -43,7 +43,7 @@ impl Bindings {
         self.shaders.insert(shader.name.clone(), text);
     }
 
-    /// Writes `shared.rs` and `bindings.rs` to the folder `out`.
+    /// The generated files `shared.rs` and `bindings.rs`: name and text.
     pub fn texts(&self) -> [(String, String); 2] {
         let shared = nested(&self.shared.iter().map(|(path, items)| (path.clone(), joined(items))).collect());
         [("shared.rs".to_owned(), shared), ("bindings.rs".to_owned(), nested(&self.shaders))]

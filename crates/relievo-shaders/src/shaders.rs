@@ -6,11 +6,10 @@ use std::path::{Path, PathBuf};
 
 use naga::common::wgsl::TypeContext as _;
 use naga::{AddressSpace, Binding, Expression, Literal, ShaderStage, StorageAccess, TypeInner};
-use wesl::Resolver as _;
 use wgsl_parse::SyntaxNode as _;
 
 use crate::bindings::Bindings;
-use crate::digest::digest;
+use crate::digest::{digest, shader_files};
 use crate::entries::{KindText, OutputText, composed, entries, exports};
 use crate::{modules, packed, prefix};
 
@@ -39,9 +38,9 @@ pub fn generated(root: &Path) -> BTreeMap<String, String> {
         }
     }
     files.extend(bindings.texts());
-    write_core(root, &core, &mut files, &mut manifest);
+    add_core(root, &core, &mut files, &mut manifest);
     refuse_unused_module_bindings(root, &all);
-    write_modules(root, &mut files, &mut manifest);
+    add_modules(root, &mut files, &mut manifest);
     let list = all.iter().map(|shader| format!("&{}", shader.constant())).collect::<Vec<_>>().join(", ");
     writeln!(manifest, "/// Every shader of the crate.\npub static ALL: &[&Shader] = &[{list}];")
         .expect("a string");
@@ -58,8 +57,8 @@ fn included(path: &str) -> String {
 /// Path of a generated module, the scene core. It imports everything that the shader of a caller's kind of object needs.
 const CORE: &str = "wgsl/render/scene_core.wgsl";
 
-/// Writes the scene core, to which callers' kinds of objects are added at run time. Validates it with a minimal kind.
-fn write_core(root: &Path, core: &str, texts: &mut BTreeMap<String, String>, manifest: &mut String) {
+/// Adds the scene core to `texts`: what callers' kinds of objects stand beside at run time. Validates it with a minimal kind.
+fn add_core(root: &Path, core: &str, texts: &mut BTreeMap<String, String>, manifest: &mut String) {
     let files = output_files(root);
     let (outputs, _) = outputs(&files, root, true);
     let outputs: Vec<_> = outputs.iter().map(|output| (&*output.name, output.moves)).collect();
@@ -85,8 +84,8 @@ fn least_surface(in: relievo_SceneFragment) -> Surface { return relievo_scene_su
     .expect("a string");
 }
 
-/// Writes the modules for shaders outside the crate. A module is the file `module.wgsl` of a folder, with all of its imports.
-fn write_modules(root: &Path, files: &mut BTreeMap<String, String>, manifest: &mut String) {
+/// Adds the modules for shaders outside the crate to `files`. A module is the file `module.wgsl` of a folder, with all of its imports.
+fn add_modules(root: &Path, files: &mut BTreeMap<String, String>, manifest: &mut String) {
     let mut all = Vec::new();
     for file in shader_files(&root.join("wgsl")) {
         if file.file_stem().is_none_or(|stem| stem != "module") {
@@ -160,20 +159,6 @@ fn kind_root(root: &Path, relative: &Path, kind: &KindText<'_>) -> String {
     text + &entries(kind, &outputs)
 }
 
-fn shader_files(folder: &Path) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display())) {
-        let path = entry.expect("a readable folder").path();
-        if path.is_dir() {
-            files.extend(shader_files(&path));
-        } else if path.extension().is_some_and(|extension| extension == "wgsl") {
-            files.push(path);
-        }
-    }
-    files.sort();
-    files
-}
-
 /// Refuses a module with a binding that no shader uses.
 fn refuse_unused_module_bindings(root: &Path, shaders: &[Shader]) {
     for file in shader_files(&root.join("wgsl")) {
@@ -200,7 +185,8 @@ enum Keep {
 /// Composes a file and all of its imports into one flat text.
 fn flatten(root: &Path, file: &Path, keep: Keep, mangler: wesl::ManglerKind) -> String {
     let relative = file.strip_prefix(root).expect("below the root");
-    let mut compiler = wesl::Wesl::new(root).set_custom_resolver(sources(root));
+    let resolver = sources(root);
+    let mut compiler = wesl::Wesl::new(root).set_custom_resolver(&resolver);
     // Not lazy, so that unused imports are also checked for existence.
     compiler.set_options(wesl::CompileOptions {
         lazy: false,
@@ -214,7 +200,7 @@ fn flatten(root: &Path, file: &Path, keep: Keep, mangler: wesl::ManglerKind) -> 
         module_path(&if is_kind(file) { Path::new("entries").join(relative) } else { relative.to_owned() });
     match compiler.compile(&path) {
         Ok(mut result) => {
-            let place = places(root, &result.modules, &path);
+            let place = places(&resolver, &result.modules, &path);
             let at = |declaration: &wesl::syntax::GlobalDeclarationNode| {
                 declaration.ident().and_then(|ident| place.get(&*ident.name()).copied())
             };
@@ -228,11 +214,10 @@ fn flatten(root: &Path, file: &Path, keep: Keep, mangler: wesl::ManglerKind) -> 
 /// The order of declarations in a flat text: by module, the root last, and as in their files. WESL's own order changes from run to
 /// run.
 fn places(
-    root: &Path,
+    resolver: &impl wesl::Resolver,
     modules: &[wesl::ModulePath],
     last: &wesl::ModulePath,
 ) -> HashMap<String, (usize, usize)> {
-    let resolver = sources(root);
     let mut modules: Vec<_> = modules.iter().map(|path| (path == last, path.to_string(), path)).collect();
     modules.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
     let mut places = HashMap::new();

@@ -1,4 +1,4 @@
-//! What is in `generated/` comes from `kernels/`, `wgsl/` and this generator.
+//! The files in `generated/` are those that the generator writes.
 
 use std::collections::BTreeSet;
 use std::path::Path;
