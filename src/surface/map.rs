@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::asset::decode_image;
 use crate::shared::surface::ray;
 use crate::{Error, InputError};
 
@@ -160,23 +161,19 @@ const NO_ALPHA: &str = "has no alpha channel to take heights from";
 /// # Errors
 /// [`Error::File`] if the file cannot be read or decoded.
 pub fn open(path: &Path) -> Result<image::DynamicImage, Error> {
-    let file = std::fs::File::open(path).map_err(|error| Error::file(path, error))?;
-    decode(std::io::BufReader::new(file)).map_err(|error| Error::file(path, error))
+    let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
+    decode(&bytes).map_err(|error| Error::file(path, error))
 }
 
 /// Decodes an image from bytes. The size is checked first: no edge may be longer than [`MAP_EDGE`].
 ///
 /// # Errors
 /// Errors of the crate `image`: invalid data, or an edge that is too long.
-pub fn decode(
-    bytes: impl std::io::BufRead + std::io::Seek,
-) -> Result<image::DynamicImage, image::ImageError> {
-    let mut reader = image::ImageReader::new(bytes).with_guessed_format()?;
+pub fn decode(bytes: &[u8]) -> Result<image::DynamicImage, image::ImageError> {
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MAP_EDGE);
     limits.max_image_height = Some(MAP_EDGE);
-    reader.limits(limits);
-    reader.decode()
+    decode_image(bytes, limits)
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use image::Pixel as _;
 use image::imageops::{FilterType, resize};
 
 use crate::Error;
+use crate::asset::decode_image;
 use crate::srgb;
 use crate::terrain::config::{BuiltIn, Zone, ZoneTexture};
 
@@ -37,7 +38,9 @@ impl TerrainTexture {
     /// # Errors
     /// [`Error::File`] when the image cannot be read.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
-        Ok(Self::from_image(&image::open(path).map_err(|error| Error::file(path, error))?))
+        let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
+        let image = decode_image(&bytes, image::Limits::default());
+        Ok(Self::from_image(&image.map_err(|error| Error::file(path, error))?))
     }
 
     /// Converts an image to a texture of [`TEXTURE_SIZE`]² texels. The height map is the image's alpha channel or, without alpha,

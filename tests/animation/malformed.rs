@@ -67,8 +67,16 @@ fn nodes_and_skins() {
     refused("/nodes/2/children", json!([1]), "nodes[2].children[0]", &["one parent", "nodes[0]"]);
     refused("/nodes/0/children", json!([7]), "nodes[0].children[0]", &["list"]);
     refused("/nodes/0/rotation", json!([0, 0, 0, 0]), "nodes[0].rotation", &["unit"]);
-    refused("/nodes/0/translation", json!([0, 1e300, 0]), "nodes[0].translation[1]", &["inf", "finite"]);
+    let odd = json!({ "name": "\"ü\n[{", "mesh": [7] });
+    refused("/nodes/0", odd, "nodes[0].mesh", &["= [7]", "whole number"]);
+    refused("/nodes/0/translation", json!([0, 1e300, 0]), "nodes[0].translation[1]", &["1e+300", "finite"]);
     refused("/nodes/0/translation", json!([0, 1]), "nodes[0].translation", &["[0,1]", "array of length 3"]);
+    refused(
+        "/nodes/0/translation",
+        json!([0, 1, 2, 3]),
+        "nodes[0].translation[3]",
+        &["= 3", "enough elements"],
+    );
     refused(
         "/nodes/0/matrix",
         json!([1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]),

@@ -6,6 +6,8 @@ use relievo::asset::material::Alpha;
 use relievo::asset::{Bone, Material, Mesh, Model, Skeleton, Skin, Transform};
 use relievo::scene::{Camera, Placement};
 
+use crate::harness::is_coarse;
+
 /// A triangle in the world, relative to cell (0, 0, 0).
 #[derive(Clone, Copy)]
 pub struct Triangle {
@@ -21,6 +23,23 @@ pub struct Triangle {
 pub struct Hit {
     pub triangle: usize,
     pub position: DVec3,
+    /// Places of the triangle's plane, around what a pixel may show in place of `position`.
+    around: [DVec3; 4],
+}
+
+impl Hit {
+    /// By how much a value that depends on the place may differ from that at `position`.
+    pub fn slack(&self, value: impl Fn(DVec3) -> f64) -> f64 {
+        let wanted = value(self.position);
+        // Values hardly bend within a part of a pixel.
+        1.05 * self.around.iter().map(|place| (value(*place) - wanted).abs()).fold(0.0, f64::max)
+    }
+}
+
+/// By how many pixels what a pixel shows may lie beside its middle: an adapter that rounds vertices to a sixteenth of a pixel
+/// moves each place of a triangle by half of that at most.
+pub fn pixels_beside() -> f64 {
+    if is_coarse() { 1.0 / 32.0 } else { 0.0 }
 }
 
 /// The ray through a place of the picture in pixels: where it begins, on the near plane, and its direction.
@@ -56,21 +75,28 @@ fn first_of(
         if facing.abs() < 1e-12 || facing < 0.0 && !triangle.double_sided {
             continue;
         }
-        let distance = (from - a).dot(normal) / facing;
-        let position = from + distance * along;
+        let (distance, position) = on_plane(triangle, [from, along]);
         let inside = position - a;
         let area = normal.length_squared();
         let weights = [inside.cross(v).dot(normal) / area, u.cross(inside).dot(normal) / area];
         let is_inside = weights[0] >= 0.0 && weights[1] >= 0.0 && weights[0] + weights[1] <= 1.0;
         if distance > 0.0 && is_inside && nearest.as_ref().is_none_or(|(before, _)| distance < *before) {
-            nearest = Some((distance, Hit { triangle: at, position }));
+            nearest = Some((distance, Hit { triangle: at, position, around: [position; 4] }));
         }
     }
     nearest.map(|(_, hit)| hit)
 }
 
+/// Where a ray meets the plane of a triangle: how far along, and the place.
+fn on_plane(triangle: &Triangle, [from, along]: [DVec3; 2]) -> (f64, DVec3) {
+    let [a, b, c] = triangle.corners;
+    let normal = (b - a).cross(c - a);
+    let distance = (a - from).dot(normal) / normal.dot(along);
+    (distance, from + distance * along)
+}
+
 /// For each pixel what its middle sees, or an error where rounding may decide: where places a hundredth of a pixel beside
-/// it see something else.
+/// it, or twice [`pixels_beside`] farther, see something else.
 pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit>, ()>> {
     let [width, height] = camera.viewport;
     let pixels = (0..width * height).map(|at| [at % width, at / width].map(|edge| f64::from(edge) + 0.5));
@@ -79,8 +105,9 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
     pixels
         .map(|[x, y]| {
             let middle = ray(camera, [x, y]);
-            let beside = [[-0.01, 0.0], [0.01, 0.0], [0.0, -0.01], [0.0, 0.01]];
-            let beside = beside.map(|[dx, dy]| ray(camera, [x + dx, y + dy]));
+            let through = |[dx, dy]: [f64; 2]| ray(camera, [x + dx, y + dy]);
+            let edge = 0.01 + 2.0 * pixels_beside();
+            let beside = [[-edge, 0.0], [edge, 0.0], [0.0, -edge], [0.0, edge]].map(through);
             let apart = [0, 1]
                 .map(|part| beside.iter().map(|ray| (ray[part] - middle[part]).length()).fold(0.0, f64::max));
             let is_near = |at: &usize| balls[*at].may_meet(middle, apart);
@@ -88,7 +115,12 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
             let first = |ray| first_of(triangles, some.iter().copied(), ray);
             let seen = first(middle);
             let is_sure = beside.iter().all(|ray| tag(&first(*ray)) == tag(&seen));
-            if is_sure { Ok(seen) } else { Err(()) }
+            let off = pixels_beside();
+            let shown = |hit: Hit| {
+                let corners = [[-off, -off], [off, -off], [-off, off], [off, off]].map(through);
+                Hit { around: corners.map(|ray| on_plane(&triangles[hit.triangle], ray).1), ..hit }
+            };
+            if is_sure { Ok(seen.map(shown)) } else { Err(()) }
         })
         .collect()
 }

@@ -8,6 +8,7 @@ use relievo::scene::{Camera, ObjectId, Placement, Quality, Relief, Scene, View};
 use relievo::wgpu;
 
 use crate::frame::device;
+use crate::harness::is_coarse;
 use crate::raw::Raw;
 use crate::rays::{Hit, Triangle, cube, matrix, model, picture, placed, plain};
 use crate::world::World;
@@ -154,8 +155,9 @@ fn positions_are_those_of_traced_rays() {
         let (worst, wrong, seen) = wrong_positions(&raw, &gpu, &triangles, object.number());
         println!("off by {worst}");
         assert!(seen > 600 && worst < 2e-4 && wrong == 0, "{seen} pixels, off by {worst}, {wrong} wrong");
-        // Faults are seen: surfaces that are moved by a thousandth of a unit, and another number.
-        let shift = DVec3::new(0.001, 0.0, 0.001);
+        // Faults are seen: surfaces that are moved by a thousandth of a unit (or by more than rounded vertices explain), and
+        // another number.
+        let shift = DVec3::new(1.0, 0.0, 1.0) * if is_coarse() { 0.05 } else { 0.001 };
         let moved = |triangle: &Triangle| Triangle {
             corners: triangle.corners.map(|corner| corner + shift),
             ..*triangle
@@ -182,7 +184,8 @@ fn wrong_positions(
             return;
         };
         let [x, y, z, w] = positions[at].map(f64::from);
-        worst = worst.max((DVec3::new(x, y, z) - hit.position).length());
+        let slack = hit.slack(|place| place.distance(hit.position));
+        worst = worst.max(DVec3::new(x, y, z).distance(hit.position) - slack);
         wrong += usize::from(w != 1.0 || ids[at] != [object, (triangles[hit.triangle].tag / 100) as u32]);
     });
     (worst, wrong, seen)

@@ -28,7 +28,7 @@ use harness::Tolerance;
 fn missing_erosion_is_seen() {
     let golden = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("goldens").join(name);
-        image::open(path).expect("a golden").into_rgba8()
+        relievo_testing::picture(path).into_rgba8()
     };
     let [before, after] = ["uneroded.png", "eroded.png"].map(golden);
     let found = harness::Difference::of(&before, &after, Tolerance::IMAGE.levels);

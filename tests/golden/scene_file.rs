@@ -90,7 +90,7 @@ fn scenes_of_files_equal_their_goldens() {
 /// How a picture differs from a golden.
 fn difference(name: &str, actual: &RgbaImage) -> Difference {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("goldens").join(format!("{name}.png"));
-    let golden = image::open(path).expect("a golden").into_rgba8();
+    let golden = relievo_testing::picture(path).into_rgba8();
     Difference::of_golden(actual, &golden, Tolerance::IMAGE.levels)
 }
 

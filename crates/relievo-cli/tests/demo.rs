@@ -15,9 +15,7 @@ fn the_demo_equals_its_goldens() {
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let wrong: Vec<_> = (DEMO_VIEWS.iter().chain(DEMO_MAPS))
         .filter_map(|name| {
-            let actual = image::open(folder.path().join(format!("{name}.png")))
-                .expect("the demo drew it")
-                .into_rgba8();
+            let actual = relievo_testing::picture(folder.path().join(format!("{name}.png"))).into_rgba8();
             match check_golden(name, &actual, Tolerance::IMAGE) {
                 Ok(difference) => {
                     println!("{name}: {difference:?}");

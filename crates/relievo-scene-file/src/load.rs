@@ -1,7 +1,6 @@
 //! Reads the files that a scene names, and prepares their contents: levels of detail, reliefs, textures.
 
 use std::collections::{BTreeSet, HashMap};
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -415,8 +414,7 @@ impl<'a> Files<'a> {
 
     fn decoded(&self, path: &str, file: &Path) -> Result<DynamicImage, InputError> {
         let bytes = self.bytes(path, file)?;
-        // The same type of reader as for images of models: the decoders are compiled for each.
-        relievo::ops::surface::map::decode(Cursor::new(&bytes[..])).map_err(|error| {
+        relievo::ops::surface::map::decode(&bytes).map_err(|error| {
             InputError::new(path, file.display(), format!("must be a whole PNG or JPEG: {error}"))
         })
     }
@@ -517,6 +515,8 @@ fn base_color(model: &Model) -> Result<RgbaImage, InputError> {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Cursor;
+
     use super::*;
     use crate::NoBuiltIns;
     use relievo_samples::Samples;

@@ -10,8 +10,9 @@ pub use devices::Devices;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use image::RgbaImage;
+use image::{DynamicImage, RgbaImage};
 use relievo::gpu::{AdapterSummary, Gpu, Options, adapters};
+use relievo::ops::surface::map;
 
 /// The folder of the workspace, where `goldens/`, `docs/` and `tests/` are.
 pub fn root() -> &'static Path {
@@ -205,6 +206,15 @@ pub fn check_golden(name: &str, actual: &RgbaImage, tolerance: Tolerance) -> Res
     check_golden_in(&goldens(), name, actual, tolerance, blessing())
 }
 
+/// Reads a picture of at most 8192 × 8192 pixels. The decoders of the crate `image` are generic: `image::open` compiles them for each
+/// program that calls it.
+///
+/// # Panics
+/// If there is no such picture.
+pub fn picture(path: impl AsRef<Path>) -> DynamicImage {
+    map::open(path.as_ref()).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// [`check_golden`] in any folder, blessing or not.
 pub fn check_golden_in(
     folder: &Path,
@@ -222,7 +232,7 @@ pub fn check_golden_in(
             _ => format!("{name}: {bytes} bytes: a golden has at most 65536"),
         });
     }
-    let expected = match image::open(&path) {
+    let expected = match map::open(&path) {
         Ok(image) => image.into_rgba8(),
         Err(error) => return Err(format!("{name}: no golden ({error}); {}", report(name, actual, None))),
     };

@@ -7,6 +7,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{DeserializeOwned, Error as _, IntoDeserializer, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
+use serde_path_to_error::Segment;
 
 use crate::error::json::{message, refused_value, shown, unreadable};
 use crate::{Error, InputError};
@@ -45,7 +46,7 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
         // If the text is valid JSON, the fault must be a value, so the error quotes that value.
         let document: Option<Value> = serde_json::from_str(text).ok();
         document
-            .and_then(|document| refused_value(&document, &error))
+            .and_then(|document| refused(&document, &error))
             .unwrap_or_else(|| unreadable(&path, error.inner()))
     })?;
     reader.end().map_err(|error| unreadable(what, &error))?;
@@ -56,13 +57,19 @@ pub(crate) fn from_json_object<T: DeserializeOwned>(what: &str, text: &str) -> R
 pub(crate) fn from_json_value<T: DeserializeOwned>(what: &str, value: &Value) -> Result<T, InputError> {
     let object: Object<T> = serde_path_to_error::deserialize(value).map_err(|error| {
         let whole = || InputError::new(what, shown(value), message(error.inner()));
-        if error.path().to_string() == "." {
-            whole()
-        } else {
-            refused_value(value, &error).unwrap_or_else(whole)
-        }
+        if error.path().to_string() == "." { whole() } else { refused(value, &error).unwrap_or_else(whole) }
     })?;
     Ok(object.0)
+}
+
+/// [`refused_value`] for the value in `document` that an error is about.
+fn refused(document: &Value, error: &serde_path_to_error::Error<serde_json::Error>) -> Option<InputError> {
+    let value = error.path().iter().try_fold(document, |value, segment| match segment {
+        Segment::Map { key } => value.get(key),
+        Segment::Seq { index } => value.get(*index),
+        Segment::Enum { .. } | Segment::Unknown => None,
+    })?;
+    refused_value(&error.path().to_string(), value, error.inner())
 }
 
 /// Reads a variant of the enum `T` from the variant's name, a JSON string.

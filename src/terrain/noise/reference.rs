@@ -1,5 +1,5 @@
 //! Heights of a region from octaves of noise: the CPU reference of `kernels/terrain/noise.wgsl`. It computes one sample after
-//! another with 64-bit products, and keeps the random words of each octave's last cell.
+//! another with 64-bit products, and keeps the lattice points of each octave's last cell.
 
 use super::octave_key;
 use crate::hash::{LANES, threefry2x32};
@@ -75,17 +75,42 @@ struct Octave {
     log2: u32,
     key: [u32; 2],
     range: u32,
-    /// Lattice points of the last sample's cell, and their random words.
-    cell: ([u32; 4], [u32; 4], [[u32; LANES]; 2]),
+    /// Lattice points of the last sample's cell.
+    cell: Cell,
+}
+
+/// Four lattice points, and what is random there.
+struct Cell {
+    x: [u32; 4],
+    y: [u32; 4],
+    /// Q.7.
+    gradients: [[i32; 2]; 4],
+    /// Q4.27.
+    values: [i32; 4],
+}
+
+impl Cell {
+    fn new(key: [u32; 2], x: [u32; 4], y: [u32; 4]) -> Self {
+        let twice = |four: [u32; 4]| -> [u32; LANES] { std::array::from_fn(|lane| four[lane % 4]) };
+        let (turns, values) = threefry2x32(key, twice(x), twice(y));
+        let gradient = |index: usize| {
+            let turn = turns[index] >> 16;
+            [sine(turn), sine(turn + 0x4000)]
+        };
+        Self {
+            x,
+            y,
+            gradients: std::array::from_fn(gradient),
+            values: std::array::from_fn(|index| values[index] as i32 >> 5),
+        }
+    }
 }
 
 impl Octave {
     fn new(config: &TerrainConfig, index: u32) -> Self {
         let key = octave_key(config.key(), index);
-        let none = [0; 4];
-        let words = words(key, none, none);
         let (log2, range) = (config.base_log2() - index, config.level_range(index));
-        Self { index, log2, key, range, cell: (none, none, words) }
+        Self { index, log2, key, range, cell: Cell::new(key, [0; 4], [0; 4]) }
     }
 
     /// Gradient noise on the square lattice; with `values`, plus interpolated random values of the lattice points.
@@ -99,8 +124,7 @@ impl Octave {
         let corner = |index: usize| {
             let one = 1 << 20;
             let offset = [u - (index as i32 & 1) * one, v - (index as i32 >> 1) * one];
-            let value = if values { self.cell.2[1][index] as i32 >> 5 } else { 0 };
-            self.ramp(index, offset) + value
+            self.ramp(index, offset) + if values { self.cell.values[index] } else { 0 }
         };
         let [u, v] = [u, v].map(|fraction| fade(fraction as u32));
         Noise(mix(mix(corner(0), corner(1), u), mix(corner(2), corner(3), u), v))
@@ -147,24 +171,18 @@ impl Octave {
         Noise((sum * 11) >> 3)
     }
 
-    /// Draws the random words of four lattice points.
+    /// Goes on to the cell with these lattice points.
     fn draw(&mut self, x: [u32; 4], y: [u32; 4]) {
-        if (self.cell.0, self.cell.1) != (x, y) {
-            self.cell = (x, y, words(self.key, x, y));
+        if (self.cell.x, self.cell.y) != (x, y) {
+            self.cell = Cell::new(self.key, x, y);
         }
     }
 
-    /// Product of a lattice point's gradient (Q.7) and an offset (Q.20) from the point.
-    fn ramp(&self, index: usize, offset: [i32; 2]) -> i32 {
-        let turn = self.cell.2[0][index] >> 16;
-        sine(turn + 0x4000) * offset[1] + sine(turn) * offset[0]
+    /// Product of a lattice point's gradient and an offset (Q.20) from the point.
+    fn ramp(&self, index: usize, [x, y]: [i32; 2]) -> i32 {
+        let [along_x, along_y] = self.cell.gradients[index];
+        along_x * x + along_y * y
     }
-}
-
-fn words(key: [u32; 2], x: [u32; 4], y: [u32; 4]) -> [[u32; LANES]; 2] {
-    let twice = |four: [u32; 4]| std::array::from_fn(|lane| four[lane % 4]);
-    let (first, second) = threefry2x32(key, twice(x), twice(y));
-    [first, second]
 }
 
 /// A parabola in place of a sine, with the largest value 170/128 (Q.7). `turn` is the angle: 65536 is a whole turn.

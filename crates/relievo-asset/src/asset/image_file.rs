@@ -4,7 +4,7 @@ use std::io::Cursor;
 use std::ops::Deref;
 use std::sync::{Arc, LazyLock, OnceLock};
 
-use image::{ImageError, ImageFormat, ImageReader, RgbaImage};
+use image::{DynamicImage, ImageError, ImageFormat, ImageReader, ImageResult, Limits, RgbaImage};
 
 use crate::InputError;
 
@@ -72,7 +72,17 @@ impl PartialEq<RgbaImage> for Image {
     }
 }
 
-/// Image formats that can be decoded.
+/// Decodes an image of any format that the crate `image` was compiled with.
+///
+/// # Errors
+/// Errors of `image`: invalid data, or an image beyond the limits.
+pub fn decode_image(bytes: &[u8], limits: Limits) -> ImageResult<DynamicImage> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+    reader.limits(limits);
+    reader.decode()
+}
+
+/// Formats of the images of models.
 const FORMATS: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
 
 /// Width and height that a file states, and its format. `path` names the image in errors.

@@ -1,7 +1,6 @@
 //! Converts JSON errors to an [`InputError`] with path, value and bound.
 
 use serde_json::Value;
-use serde_path_to_error::Segment;
 
 use super::InputError;
 
@@ -39,11 +38,8 @@ pub fn place(error: &serde_json::Error) -> String {
 
 /// The error for a value that its field does not accept, or for a field that is unknown or given twice. `None` for other errors
 /// of serde.
-pub fn refused_value(
-    document: &Value,
-    error: &serde_path_to_error::Error<serde_json::Error>,
-) -> Option<InputError> {
-    let message = message(error.inner());
+pub fn refused_value(path: &str, value: &Value, error: &serde_json::Error) -> Option<InputError> {
+    let message = message(error);
     let bound = match message.split_once("expected ") {
         _ if message.contains(" field `") => message,
         Some((_, "f32" | "f64" | "a JSON number")) => "must be a number".to_owned(),
@@ -59,10 +55,5 @@ pub fn refused_value(
         },
         None => return None,
     };
-    let value = error.path().iter().try_fold(document, |value, segment| match segment {
-        Segment::Map { key } => value.get(key),
-        Segment::Seq { index } => value.get(*index),
-        Segment::Enum { .. } | Segment::Unknown => None,
-    })?;
-    Some(InputError::new(error.path().to_string(), shown(value), bound))
+    Some(InputError::new(path, shown(value), bound))
 }

@@ -120,7 +120,8 @@ fn the_manifest_tells_types_defaults_offsets_and_limits() {
     assert_eq!(sample["bindings"][0], params);
     assert_eq!(sample["bindings"][3]["type"], "array<vec4<f32>>");
     let structs = sample["structs"].as_array().expect("a list");
-    let layout = structs.iter().find(|layout| layout["name"] == "SampleParams").expect("a structure of parameters");
+    let layout =
+        structs.iter().find(|layout| layout["name"] == "SampleParams").expect("a structure of parameters");
     assert_eq!(layout["members"][4], json!({ "name": "layers", "offset": 16, "type": "u32" }));
     let vertex = &shader("render/scene_terrain")["entry_points"][0];
     assert_eq!(vertex["inputs"][0], json!({ "location": 0, "name": "entry", "type": "u32" }));

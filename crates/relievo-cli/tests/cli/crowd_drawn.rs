@@ -86,7 +86,7 @@ fn crowds_are_drawn_and_timed() {
     }
     assert!(number(&far["triangle_fraction"]) < 0.5 * number(&near["triangle_fraction"]));
     let [near, far] = ["crowd_300.png", "crowd_2000.png"].map(|name| {
-        let picture = image::open(out.join(name)).expect("a PNG").into_rgba8();
+        let picture = relievo_testing::picture(out.join(name)).into_rgba8();
         assert_eq!(picture.dimensions(), (1920, 1080));
         covered(&picture)
     });
@@ -150,7 +150,7 @@ fn scenes_compare_six_ways() {
     }
     assert!(number(&far["tall_pixels"]) < 100.0);
     assert!(instances(&far["all"])[0] == 0.0 && instances(&far["both"])[0] == 4.0, "{far}");
-    assert!(image::open(out.join("scene.png")).expect("a PNG").width() >= 600);
+    assert!(relievo_testing::picture(out.join("scene.png")).width() >= 600);
     assert!(out.join("crowd_300.png").is_file());
     let near = row("scene.json", "300", &[&gate[..], &["--mesh", "full"]].concat());
     for missing in ["mesh", "all", "all_cheaper"] {
@@ -224,7 +224,7 @@ fn morph_targets_move_in_crowds() {
         let row = &report["distances"][0];
         assert_eq!(number(&row["skinned_fraction"]), 1.0);
         assert!(off(row)[0] <= ROUNDING, "{row}");
-        covered(&image::open(folder.path().join("out/crowd_2000.png")).expect("a PNG").into_rgba8()) as f64
+        covered(&relievo_testing::picture(folder.path().join("out/crowd_2000.png")).into_rgba8()) as f64
     };
     // The instance starts anywhere in the clip and passes its end once: two of three steps are a quarter of
     // the way.

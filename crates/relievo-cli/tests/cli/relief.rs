@@ -59,7 +59,7 @@ impl Bench {
     }
 
     fn image(&self, file: &str) -> image::RgbaImage {
-        image::open(self.path(file)).expect("a PNG").into_rgba8()
+        relievo_testing::picture(self.path(file)).into_rgba8()
     }
 }
 

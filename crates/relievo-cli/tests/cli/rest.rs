@@ -46,7 +46,7 @@ impl Bench {
         let out = self.path("out");
         let run = relievo(&[&["skin", "--model", &self.path(model), "--out", &out], more].concat());
         assert_eq!(run.code, Some(0), "{}", run.stderr);
-        let picture = image::open(Path::new(&out).join("skin.png")).expect("a picture").to_rgb8();
+        let picture = relievo_testing::picture(Path::new(&out).join("skin.png")).to_rgb8();
         let corner = picture.get_pixel(0, 0);
         assert!(picture.pixels().filter(|pixel| *pixel != corner).count() > 10_000);
         let text = std::fs::read_to_string(Path::new(&out).join("attached.obj")).expect("written");

@@ -51,7 +51,7 @@ impl Folder {
     }
 
     pub fn frame(&self, number: u32) -> image::DynamicImage {
-        image::open(self.path(&format!("out/frame_{number:04}.png"))).expect("a frame")
+        relievo_testing::picture(self.path(&format!("out/frame_{number:04}.png")))
     }
 }
 
@@ -247,8 +247,7 @@ fn surfaces_have_normals_colors_and_numbers() {
     });
     let run = folder.run(&scene.to_string(), &["--layer", "surface", "--size", "40x32"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
-    let read =
-        |name: &str| image::open(folder.path(&format!("out/frame_0000{name}.png"))).expect("a picture");
+    let read = |name: &str| relievo_testing::picture(folder.path(&format!("out/frame_0000{name}.png")));
     let normals = read("").into_rgb8();
     let off = |pixel: &image::Rgb<u8>| pixel.0.iter().zip([128, 128, 255]).any(|(a, b)| a.abs_diff(b) > 1);
     let wrong = normals.pixels().find(|pixel| off(pixel));

@@ -113,7 +113,7 @@ fn levels_are_fetched_and_completed() {
         let folder = text(out.path());
         let run = relievo(&["scene", &scene, "--size", "64x48", "--out", &folder, "--depth", "forward"]);
         assert_eq!(run.code, Some(0), "{}", run.stderr);
-        relievo::image::open(out.path().join("frame_0000.png")).expect("a picture").into_rgba8()
+        relievo_testing::picture(out.path().join("frame_0000.png")).into_rgba8()
     });
     let difference = crate::harness::Difference::of(&pictures[0], &pictures[1], 3);
     assert!(difference.flip < 0.02, "{difference:?}");

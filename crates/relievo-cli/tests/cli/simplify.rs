@@ -142,7 +142,7 @@ fn levels_are_written_in_their_order() {
                 model.meshes.iter().map(|mesh| mesh.material.map(|at| &*model.materials[at].name)).collect();
             assert_eq!(names, [Some("grass"), None]);
         }
-        let picture = image::open(bench.path("out/levels.png")).expect("a picture").to_rgb8();
+        let picture = relievo_testing::picture(bench.path("out/levels.png")).to_rgb8();
         let pictures = if format == "glb" { 5 } else { 3 };
         assert_eq!(picture.width(), pictures * (384 + 8) + 8);
         let green = picture
@@ -177,7 +177,7 @@ fn both_backends_draw_and_normals_are_as_asked() {
     let mut pictures = Vec::new();
     for backend in ["gpu", "cpu"] {
         bench.levels("hills.obj", &["--share", "0.2", "--backend", backend, "--normals", "recompute"]);
-        pictures.push(image::open(bench.path("out/levels.png")).expect("a picture").to_rgb8());
+        pictures.push(relievo_testing::picture(bench.path("out/levels.png")).to_rgb8());
     }
     let pairs = pictures[0].as_raw().iter().zip(pictures[1].as_raw());
     let off = pairs.filter(|(a, b)| a.abs_diff(**b) > 3).count() as f64 / pictures[0].as_raw().len() as f64;
@@ -235,7 +235,7 @@ fn reducers_are_compared() {
         }
     }
     assert_eq!(table.lines().filter(|line| line.starts_with("| ")).count(), lines + 1);
-    assert_eq!(image::open(bench.path("out/compare.png")).expect("a picture").width(), 1200);
+    assert_eq!(relievo_testing::picture(bench.path("out/compare.png")).width(), 1200);
 }
 
 /// A model in which each triangle has texture coordinates of its own keeps its triangles, and the output says why.

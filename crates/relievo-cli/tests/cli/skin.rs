@@ -52,7 +52,7 @@ impl Bench {
         assert_eq!(run.code, Some(0), "{}", run.stderr);
         assert_eq!(run.stdout.is_empty(), !more.contains(&"--within"), "{}", run.stdout);
         assert!(run.stderr.is_empty());
-        let picture = image::open(Path::new(&out).join("skin.png")).expect("a picture").to_rgb8();
+        let picture = relievo_testing::picture(Path::new(&out).join("skin.png")).to_rgb8();
         // The picture shows something in its middle that differs from its corner.
         let corner = picture.get_pixel(0, 0);
         let covered = picture.pixels().filter(|pixel| *pixel != corner).count() as f64;
@@ -232,8 +232,7 @@ fn textures_are_seen() {
     std::fs::write(bench.path("painted.gltf"), scene.gltf()).expect("writable");
     for backend in ["gpu", "cpu"] {
         bench.skin(&bench.path("painted.gltf"), &["--clip", "0", "--time", "0", "--backend", backend]);
-        let picture =
-            image::open(Path::new(&bench.path("out")).join("skin.png")).expect("a picture").to_rgb8();
+        let picture = relievo_testing::picture(Path::new(&bench.path("out")).join("skin.png")).to_rgb8();
         for (color, [x, y]) in colors.iter().zip([[0.3, 0.3], [0.7, 0.3], [0.3, 0.7], [0.7, 0.7]]) {
             let at = |fraction: f64, edge: u32| (fraction * f64::from(edge)) as u32;
             let found = picture.get_pixel(at(x, picture.width()), at(y, picture.height())).0;

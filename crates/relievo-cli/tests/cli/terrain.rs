@@ -89,7 +89,7 @@ fn both_backends_give_the_same_hashes_and_nearly_the_same_map() {
         let cpu = bench.terrain("cpu", &[arguments, ["--backend", "cpu"].as_slice()].concat());
         assert_eq!(hashes(&gpu), hashes(&cpu), "{config}");
         assert_eq!((&gpu["backend"], &cpu["backend"]), (&"gpu".into(), &"cpu".into()));
-        let map = |out: &str| image::open(bench.path(out) + "/map.png").expect("a map").into_rgba8();
+        let map = |out: &str| relievo_testing::picture(bench.path(out) + "/map.png").into_rgba8();
         let (gpu, cpu) = (map("gpu"), map("cpu"));
         let worst = gpu.iter().zip(cpu.iter()).map(|(a, b)| a.abs_diff(*b)).max();
         assert!(gpu.dimensions() == cpu.dimensions() && worst <= Some(1), "{config}: {worst:?} levels");
@@ -129,16 +129,16 @@ fn the_report_describes_the_files() {
         assert_eq!(bytes.len(), 33 * 33 * 4);
         let hash: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
         assert_eq!(patch["sha256"], hash.as_str());
-        let samples = image::open(bench.path(&format!("{name}.png"))).expect("a PNG").into_luma16();
+        let samples = relievo_testing::picture(bench.path(&format!("{name}.png"))).into_luma16();
         let heights = heights(bench.path(&format!("{name}.i32")).into());
         for (sample, height) in samples.pixels().zip(heights) {
             let expected = (f64::from(height) / 65_536.0 - low) / (high - low) * 65_535.0;
             assert!((f64::from(sample.0[0]) - expected).abs() <= 0.5 + 1e-6);
         }
     }
-    let view = image::open(bench.path("out/terrain.png")).expect("a view").into_rgba8();
+    let view = relievo_testing::picture(bench.path("out/terrain.png")).into_rgba8();
     assert_eq!(view.dimensions(), (64, 48));
-    let map = image::open(bench.path("out/map.png")).expect("a map");
+    let map = relievo_testing::picture(bench.path("out/map.png"));
     assert_eq!((map.width(), map.height()), (65, 33));
     // The first column of one patch is the last of the other.
     let edge = |name: &str, x: &str| -> Vec<String> {
@@ -271,7 +271,7 @@ fn frames_show_the_way_to_a_target() {
     let bench = Bench::new(config);
     std::fs::write(bench.path("target.json"), config.replace("\"a\"", "\"b\"")).expect("writable");
     let target = bench.path("target.json");
-    let picture = |name: &str| image::open(bench.path(name)).expect("a picture").into_rgba8();
+    let picture = |name: &str| relievo_testing::picture(bench.path(name)).into_rgba8();
     let same = |one: &str, other: &str| picture(one).as_raw() == picture(other).as_raw();
     let names = |out: &str| {
         let files = std::fs::read_dir(bench.path(out)).expect("a folder");

@@ -337,7 +337,7 @@ fn native(folder: &Path, scene: &str, size: [u32; 2]) -> RgbaImage {
         .output()
         .expect("started");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    image::open(out).expect("a picture").into_rgba8()
+    relievo_testing::picture(out).into_rgba8()
 }
 
 /// Compares a case's picture of a scene with the native one. Both are kept in the folder of the suite.

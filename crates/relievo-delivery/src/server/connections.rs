@@ -1,12 +1,13 @@
 //! Connections of a server: limits, timeouts, an orderly end.
 
 use std::net::SocketAddr;
-use std::pin::pin;
+use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
 use axum::http::{HeaderValue, Method, StatusCode, header};
+use futures_util::future::BoxFuture;
 use hyper::server::conn::http1::Builder;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
@@ -61,57 +62,65 @@ impl Server {
     ///
     /// # Errors
     /// [`InputError`] for an origin that cannot be a header.
-    pub async fn run(self, stop: impl Future<Output = ()>) -> Result<(), ServeError> {
-        let Self { listener, site } = self;
-        let limits = site.0.options.limits.clone();
-        let places = Arc::new(Semaphore::new(limits.connections));
-        let router = router(&site)?;
-        let graceful = GracefulShutdown::new();
-        let mut stop = pin!(stop);
-        loop {
-            let free = places.clone();
-            let next = async {
-                // The semaphore is never closed.
-                let place = free.acquire_owned().await.ok();
-                (place, listener.accept().await)
-            };
-            let (place, accepted) = tokio::select! {
-                next = next => next,
-                () = &mut stop => break,
-            };
-            let stream = match accepted {
-                Ok((stream, _)) => stream,
-                Err(error) => {
-                    // Too many open files, for example: other connections must end first.
-                    tracing::warn!(%error, "a connection cannot be accepted");
-                    tokio::time::sleep(Duration::from_millis(50)).await;
-                    continue;
-                }
-            };
-            let connection = connection(&limits);
-            let mut stream = TimeoutStream::new(stream);
-            let idle = Some(Duration::from_secs_f64(limits.idle_seconds));
-            stream.set_read_timeout(idle);
-            stream.set_write_timeout(idle);
-            let service = TowerToHyperService::new(router.clone());
-            let watcher = graceful.watcher();
-            let site = site.clone();
-            tokio::spawn(async move {
-                site.0.metrics.connected(1);
-                let served = connection.serve_connection(TokioIo::new(Box::pin(stream)), service);
-                if let Err(error) = watcher.watch(served).await {
-                    tracing::debug!(%error, "a connection ended");
-                }
-                site.0.metrics.connected(-1);
-                drop(place);
-            });
-        }
-        drop(listener);
-        tokio::select! {
-            () = graceful.shutdown() => {}
-            () = tokio::time::sleep(PATIENCE) => tracing::warn!("some connections were cut off"),
-        }
-        Ok(())
+    pub async fn run(self, stop: impl Future<Output = ()> + Send) -> Result<(), ServeError> {
+        self.answers(pin!(stop)).await
+    }
+
+    fn answers<'a>(
+        self,
+        mut stop: Pin<&'a mut (dyn Future<Output = ()> + Send + 'a)>,
+    ) -> BoxFuture<'a, Result<(), ServeError>> {
+        Box::pin(async move {
+            let Self { listener, site } = self;
+            let limits = site.0.options.limits.clone();
+            let places = Arc::new(Semaphore::new(limits.connections));
+            let router = router(&site)?;
+            let graceful = GracefulShutdown::new();
+            loop {
+                let free = places.clone();
+                let next = async {
+                    // The semaphore is never closed.
+                    let place = free.acquire_owned().await.ok();
+                    (place, listener.accept().await)
+                };
+                let (place, accepted) = tokio::select! {
+                    next = next => next,
+                    () = &mut stop => break,
+                };
+                let stream = match accepted {
+                    Ok((stream, _)) => stream,
+                    Err(error) => {
+                        // Too many open files, for example: other connections must end first.
+                        tracing::warn!(%error, "a connection cannot be accepted");
+                        tokio::time::sleep(Duration::from_millis(50)).await;
+                        continue;
+                    }
+                };
+                let connection = connection(&limits);
+                let mut stream = TimeoutStream::new(stream);
+                let idle = Some(Duration::from_secs_f64(limits.idle_seconds));
+                stream.set_read_timeout(idle);
+                stream.set_write_timeout(idle);
+                let service = TowerToHyperService::new(router.clone());
+                let watcher = graceful.watcher();
+                let site = site.clone();
+                tokio::spawn(async move {
+                    site.0.metrics.connected(1);
+                    let served = connection.serve_connection(TokioIo::new(Box::pin(stream)), service);
+                    if let Err(error) = watcher.watch(served).await {
+                        tracing::debug!(%error, "a connection ended");
+                    }
+                    site.0.metrics.connected(-1);
+                    drop(place);
+                });
+            }
+            drop(listener);
+            tokio::select! {
+                () = graceful.shutdown() => {}
+                () = tokio::time::sleep(PATIENCE) => tracing::warn!("some connections were cut off"),
+            }
+            Ok(())
+        })
     }
 }
 

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use futures_util::future::LocalBoxFuture;
 use object_store::ObjectStoreExt as _;
 use serde::{Deserialize, Serialize};
 
@@ -43,56 +44,70 @@ pub struct Exported {
 /// # Errors
 /// [`ServeError`] for files that cannot be read or written.
 pub async fn export(site: &Site, folder: &Path, watch: &dyn Fn(&str)) -> Result<Manifest, ServeError> {
-    let mut files: Vec<(String, Resource)> = site.0.all_files().into_iter().collect();
-    for model in site.catalog().models.into_iter().filter(|model| model.state == ModelState::Ready) {
-        let Found::Ready(package) = site.0.model(&model.name) else { continue };
-        let name = &model.name;
-        files.push((format!("models/{name}.rlv"), site.0.resource_of(&package, Lifetime::Revalidated)));
-        for level in 0..model.levels.len() {
-            let key = MeshKey { package: package.hash.clone(), from: None, level };
-            let whole = site.0.mesh(key.clone()).await?;
-            files.push((format!("models/{name}/{level}.json"), (*whole).clone()));
-            if level + 1 < model.levels.len() {
-                let from = level + 1;
-                let difference = site.0.mesh(MeshKey { from: Some(from), ..key }).await?;
-                files.push((format!("models/{name}/{from}-{level}.json"), (*difference).clone()));
+    exported(site, folder, watch).await
+}
+
+fn exported<'a>(
+    site: &'a Site,
+    folder: &'a Path,
+    watch: &'a dyn Fn(&str),
+) -> LocalBoxFuture<'a, Result<Manifest, ServeError>> {
+    Box::pin(async move {
+        let mut files: Vec<(String, Resource)> = site.0.all_files().into_iter().collect();
+        for model in site.catalog().models.into_iter().filter(|model| model.state == ModelState::Ready) {
+            let Found::Ready(package) = site.0.model(&model.name) else { continue };
+            let name = &model.name;
+            files.push((format!("models/{name}.rlv"), site.0.resource_of(&package, Lifetime::Revalidated)));
+            for level in 0..model.levels.len() {
+                let key = MeshKey { package: package.hash.clone(), from: None, level };
+                let whole = site.0.mesh(key.clone()).await?;
+                files.push((format!("models/{name}/{level}.json"), (*whole).clone()));
+                if level + 1 < model.levels.len() {
+                    let from = level + 1;
+                    let difference = site.0.mesh(MeshKey { from: Some(from), ..key }).await?;
+                    files.push((format!("models/{name}/{from}-{level}.json"), (*difference).clone()));
+                }
             }
         }
-    }
-    for patch @ [x, y] in site.0.features.patches() {
-        let text = site.0.features.of(patch);
-        let name = format!("terrain/features/{x},{y}.json");
-        files.push((name.clone(), Resource::named(text, &name, Lifetime::Revalidated)));
-    }
-    let mut manifest = Manifest { files: Vec::new() };
-    for (path, resource) in files {
-        let place = folder.join(&path);
-        match &resource.content {
-            Content::Memory(bytes) => write(&place, bytes)?,
-            Content::Stored(object) => {
-                let store = site.0.cache.store().raw();
-                write(&place, &store.get(object).await?.bytes().await?)?;
+        for patch @ [x, y] in site.0.features.patches() {
+            let text = site.0.features.of(patch);
+            let name = format!("terrain/features/{x},{y}.json");
+            files.push((name.clone(), Resource::named(text, &name, Lifetime::Revalidated)));
+        }
+        let mut manifest = Manifest { files: Vec::new() };
+        for (path, resource) in files {
+            let place = folder.join(&path);
+            match &resource.content {
+                Content::Memory(bytes) => write(&place, bytes)?,
+                Content::Stored(object) => {
+                    let store = site.0.cache.store().raw();
+                    write(&place, &store.get(object).await?.bytes().await?)?;
+                }
             }
+            for (encoding, bytes) in &resource.encoded {
+                let mut name = place.clone().into_os_string();
+                name.push(format!(".{}", encoding.ending()));
+                write(&PathBuf::from(name), bytes)?;
+            }
+            watch(&path);
+            manifest.files.push(Exported {
+                path,
+                media: resource.media.to_owned(),
+                bytes: resource.length,
+                sha256: resource.hash,
+                immutable: resource.lifetime == Lifetime::Immutable,
+                encodings: resource
+                    .encoded
+                    .iter()
+                    .map(|(encoding, _)| encoding.ending().to_owned())
+                    .collect(),
+            });
         }
-        for (encoding, bytes) in &resource.encoded {
-            let mut name = place.clone().into_os_string();
-            name.push(format!(".{}", encoding.ending()));
-            write(&PathBuf::from(name), bytes)?;
-        }
-        watch(&path);
-        manifest.files.push(Exported {
-            path,
-            media: resource.media.to_owned(),
-            bytes: resource.length,
-            sha256: resource.hash,
-            immutable: resource.lifetime == Lifetime::Immutable,
-            encodings: resource.encoded.iter().map(|(encoding, _)| encoding.ending().to_owned()).collect(),
-        });
-    }
-    let text = serde_json::to_vec_pretty(&manifest)
-        .map_err(|error| ServeError::io("manifest.json", error.into()))?;
-    write(&folder.join("manifest.json"), &text)?;
-    Ok(manifest)
+        let text = serde_json::to_vec_pretty(&manifest)
+            .map_err(|error| ServeError::io("manifest.json", error.into()))?;
+        write(&folder.join("manifest.json"), &text)?;
+        Ok(manifest)
+    })
 }
 
 /// Writes a file, which appears as a whole.

@@ -4,6 +4,9 @@
 //! [`export()`] writes it as plain files for any web server. Models are made into packages once, and kept in a cache beside the
 //! models, which any number of servers may share.
 
+// The bodies of public `async` functions are in functions that return boxed futures: otherwise each program that awaits them
+// compiles them, and what they call, again.
+
 mod compress;
 mod connections;
 mod cooking;

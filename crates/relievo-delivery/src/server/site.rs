@@ -1,11 +1,14 @@
 //! Everything that a server has.
 
 use std::collections::BTreeMap;
+use std::hash::Hash;
 use std::path::Path;
 use std::sync::{Arc, PoisonError, RwLock};
 
 use axum::body::Bytes;
-use moka::future::Cache as MeshCache;
+use futures_util::future::BoxFuture;
+use quick_cache::Weighter;
+use quick_cache::sync::Cache as MemoryCache;
 use relievo::InputError;
 use relievo::asset::Model;
 use relievo_scene_file::BuiltIns;
@@ -37,6 +40,34 @@ pub(super) fn is_model(name: &str) -> bool {
     MODELS.contains(&ending.to_ascii_lowercase().as_str())
 }
 
+/// Values that were asked for last, up to a number of bytes. Several requests for a value that is missing make it once.
+type InMemory<Key, Value> = MemoryCache<Key, Value, InBytes>;
+
+/// Size of a value in bytes.
+#[derive(Clone)]
+struct InBytes;
+
+impl Weighter<String, Bytes> for InBytes {
+    fn weight(&self, _: &String, bytes: &Bytes) -> u64 {
+        bytes.len().max(1) as u64
+    }
+}
+
+impl Weighter<MeshKey, Arc<Resource>> for InBytes {
+    fn weight(&self, _: &MeshKey, mesh: &Arc<Resource>) -> u64 {
+        mesh.memory().max(1) as u64
+    }
+}
+
+/// A cache of values up to this number of bytes together.
+fn in_memory<Key: Eq + Hash, Value: Clone>(bytes: u64) -> InMemory<Key, Value>
+where
+    InBytes: Weighter<Key, Value>,
+{
+    // A shard has at least 32 values, and its part of the bytes: for so few values, there is one, which has them all.
+    MemoryCache::with_weighter(32, bytes, InBytes)
+}
+
 /// Everything that a server has. Clones share it.
 #[derive(Clone)]
 pub struct Site(pub(super) Arc<Inner>);
@@ -53,9 +84,9 @@ pub(super) struct Inner {
     packages: RwLock<BTreeMap<String, Package>>,
     pub features: PatchFeatures,
     /// Meshes as JSON, the ones last asked for.
-    meshes: MeshCache<MeshKey, Arc<Resource>>,
+    meshes: InMemory<MeshKey, Arc<Resource>>,
     /// Packages, the ones last asked for, by their hashes.
-    objects: MeshCache<String, Bytes>,
+    objects: InMemory<String, Bytes>,
     pub metrics: Metrics,
 }
 
@@ -99,107 +130,117 @@ impl Site {
         options: ServeOptions,
         built_ins: Box<dyn BuiltIns + Send + Sync>,
     ) -> Result<Self, ServeError> {
-        options.validate()?;
-        let models = options.models.as_deref().map(Store::open).transpose()?;
-        let folder_of = |path: &Path| path.parent().unwrap_or(Path::new("")).join(CACHE);
-        let cache = match (&options.cache, &models, &options.terrain, options.scenes.first()) {
-            (Some(folder), ..) => Store::folder(folder)?,
-            (None, Some(models), ..) => models.below(CACHE),
-            (None, None, Some(terrain), _) => Store::folder(&terrain.join(CACHE))?,
-            (None, None, None, Some(scene)) => Store::folder(&folder_of(scene))?,
-            (None, None, None, None) => Store::folder(CACHE.as_ref())?,
-        };
-        let mut files = Files::new();
-        let mut features = PatchFeatures::default();
-        if let Some(folder) = &options.terrain {
-            features = terrain(folder, &cache, &mut files).await?;
-        }
-        let mut scenes = Vec::new();
-        for path in &options.scenes {
-            scenes.push(SceneSource::open(path, &*built_ins, &mut files)?);
-        }
-        if let Some(folder) = &options.page {
-            for name in files_below(folder)? {
-                let bytes = read_file(&folder.join(&name))?;
-                files.insert(name.clone(), Resource::named(bytes, &name, Lifetime::Revalidated));
+        Self::opened(options, built_ins).await
+    }
+
+    fn opened(
+        options: ServeOptions,
+        built_ins: Box<dyn BuiltIns + Send + Sync>,
+    ) -> BoxFuture<'static, Result<Self, ServeError>> {
+        Box::pin(async move {
+            options.validate()?;
+            let models = options.models.as_deref().map(Store::open).transpose()?;
+            let folder_of = |path: &Path| path.parent().unwrap_or(Path::new("")).join(CACHE);
+            let cache = match (&options.cache, &models, &options.terrain, options.scenes.first()) {
+                (Some(folder), ..) => Store::folder(folder)?,
+                (None, Some(models), ..) => models.below(CACHE),
+                (None, None, Some(terrain), _) => Store::folder(&terrain.join(CACHE))?,
+                (None, None, None, Some(scene)) => Store::folder(&folder_of(scene))?,
+                (None, None, None, None) => Store::folder(CACHE.as_ref())?,
+            };
+            let mut files = Files::new();
+            let mut features = PatchFeatures::default();
+            if let Some(folder) = &options.terrain {
+                features = terrain(folder, &cache, &mut files).await?;
             }
-        }
-        let mut packages = BTreeMap::new();
-        if let Some(models) = &models {
-            for file in models.names().await? {
-                let Some((name, _)) = file.rsplit_once('.').filter(|_| is_model(&file)) else { continue };
-                let package = Package { file: file.clone(), state: ModelState::Cooking, package: None };
-                if let Some(other) = packages.insert(name.to_owned(), package) {
-                    let bound = format!("must have another name than {}, without extensions", other.file);
-                    return Err(InputError::new("models", file, bound).into());
+            let mut scenes = Vec::new();
+            for path in &options.scenes {
+                scenes.push(SceneSource::open(path, &*built_ins, &mut files)?);
+            }
+            if let Some(folder) = &options.page {
+                for name in files_below(folder)? {
+                    let bytes = read_file(&folder.join(&name))?;
+                    files.insert(name.clone(), Resource::named(bytes, &name, Lifetime::Revalidated));
                 }
             }
-        }
-        // Half of the memory each.
-        let half = options.limits.memory / 2;
-        let objects = MeshCache::builder()
-            .max_capacity(half)
-            .weigher(|_, bytes: &Bytes| bytes.len().try_into().unwrap_or(u32::MAX))
-            .build();
-        let meshes = MeshCache::builder()
-            .max_capacity(half)
-            .weigher(|_, mesh: &Arc<Resource>| mesh.memory().try_into().unwrap_or(u32::MAX))
-            .build();
-        let cache = Cache::new(cache, options.cache_quota)?;
-        let site = Self(Arc::new(Inner {
-            options,
-            models,
-            cache,
-            built_ins,
-            scenes,
-            failed_scenes: RwLock::default(),
-            files: RwLock::new(files),
-            packages: RwLock::new(packages),
-            features,
-            meshes,
-            objects,
-            metrics: Metrics::new(),
-        }));
-        site.0.list();
-        Ok(site)
+            let mut packages = BTreeMap::new();
+            if let Some(models) = &models {
+                for file in models.names().await? {
+                    let Some((name, _)) = file.rsplit_once('.').filter(|_| is_model(&file)) else { continue };
+                    let package = Package { file: file.clone(), state: ModelState::Cooking, package: None };
+                    if let Some(other) = packages.insert(name.to_owned(), package) {
+                        let bound = format!("must have another name than {}, without extensions", other.file);
+                        return Err(InputError::new("models", file, bound).into());
+                    }
+                }
+            }
+            // Half of the memory each.
+            let half = options.limits.memory / 2;
+            let cache = Cache::new(cache, options.cache_quota)?;
+            let site = Self(Arc::new(Inner {
+                options,
+                models,
+                cache,
+                built_ins,
+                scenes,
+                failed_scenes: RwLock::default(),
+                files: RwLock::new(files),
+                packages: RwLock::new(packages),
+                features,
+                meshes: in_memory(half),
+                objects: in_memory(half),
+                metrics: Metrics::new(),
+            }));
+            site.0.list();
+            Ok(site)
+        })
     }
 
     /// Makes all models into packages, unless the cache has them. A server may answer requests meanwhile. `watch` gets the name of
     /// a model and the completed fraction. Returns the models that could not be made, with the reasons; the others are served.
     pub async fn cook(&self, watch: &(dyn Fn(&str, f32) + Sync)) -> Vec<(String, ServeError)> {
-        let mut failed = Vec::new();
-        let names: Vec<_> = self.0.packages().keys().cloned().collect();
-        for name in names {
-            let made = self.0.cook_model(&name, watch).await;
-            let (state, package) = match made {
-                Ok(package) => (ModelState::Ready, Some(package)),
-                Err(error) => {
-                    let why = error.to_string();
-                    failed.push((name.clone(), error));
-                    (ModelState::Failed(why), None)
+        self.cooked(watch).await
+    }
+
+    fn cooked<'a>(
+        &'a self,
+        watch: &'a (dyn Fn(&str, f32) + Sync),
+    ) -> BoxFuture<'a, Vec<(String, ServeError)>> {
+        Box::pin(async move {
+            let mut failed = Vec::new();
+            let names: Vec<_> = self.0.packages().keys().cloned().collect();
+            for name in names {
+                let made = self.0.cook_model(&name, watch).await;
+                let (state, package) = match made {
+                    Ok(package) => (ModelState::Ready, Some(package)),
+                    Err(error) => {
+                        let why = error.to_string();
+                        failed.push((name.clone(), error));
+                        (ModelState::Failed(why), None)
+                    }
+                };
+                if let Some(package) = &package {
+                    self.0.add_package(package);
                 }
-            };
-            if let Some(package) = &package {
-                self.0.add_package(package);
+                let mut packages = self.0.packages.write().unwrap_or_else(PoisonError::into_inner);
+                if let Some(own) = packages.get_mut(&name) {
+                    (own.state, own.package) = (state, package);
+                }
+                drop(packages);
+                self.0.list();
             }
-            let mut packages = self.0.packages.write().unwrap_or_else(PoisonError::into_inner);
-            if let Some(own) = packages.get_mut(&name) {
-                (own.state, own.package) = (state, package);
+            for scene in &self.0.scenes {
+                match self.0.cook_scene(scene, watch).await {
+                    Ok(resource) => self.0.insert(scene_path(scene), resource),
+                    Err(error) => {
+                        self.0.failed_scene(scene_path(scene), error.to_string());
+                        failed.push((scene.path.display().to_string(), error));
+                    }
+                }
             }
-            drop(packages);
             self.0.list();
-        }
-        for scene in &self.0.scenes {
-            match self.0.cook_scene(scene, watch).await {
-                Ok(resource) => self.0.insert(scene_path(scene), resource),
-                Err(error) => {
-                    self.0.failed_scene(scene_path(scene), error.to_string());
-                    failed.push((scene.path.display().to_string(), error));
-                }
-            }
-        }
-        self.0.list();
-        failed
+            failed
+        })
     }
 
     /// What the server has now.
@@ -365,31 +406,23 @@ impl Inner {
 
     /// A package's bytes, from memory if they were asked for before.
     async fn package(&self, hash: &str) -> Result<Bytes, ServeError> {
-        self.objects.try_get_with(hash.to_owned(), self.cache.package(hash)).await.map_err(shared)
+        self.objects.get_or_insert_async(hash, self.cache.package(hash)).await
     }
 
     /// A mesh as JSON, or the difference between two levels. It is made once, and kept while it is asked for.
     pub async fn mesh(&self, key: MeshKey) -> Result<Arc<Resource>, ServeError> {
-        if let Some(found) = self.meshes.get(&key).await {
+        if let Some(found) = self.meshes.get(&key) {
             self.metrics.mesh_hit();
             return Ok(found);
         }
+        let made_of = key.clone();
         let make = async {
             self.metrics.mesh_miss();
-            let bytes = self.package(&key.package).await?;
-            let made_of = key.clone();
+            let bytes = self.package(&made_of.package).await?;
             let made = tokio::task::spawn_blocking(move || mesh_of(&bytes, &made_of));
             Ok(Arc::new(made.await.map_err(|error| ServeError::io("mesh", std::io::Error::other(error)))??))
         };
-        self.meshes.try_get_with(key.clone(), make).await.map_err(shared)
-    }
-}
-
-/// An error that several requests share.
-fn shared(error: Arc<ServeError>) -> ServeError {
-    match Arc::try_unwrap(error) {
-        Ok(error) => error,
-        Err(shared) => ServeError::io("cache", std::io::Error::other(shared.to_string())),
+        self.meshes.get_or_insert_async(&key, make).await
     }
 }
 

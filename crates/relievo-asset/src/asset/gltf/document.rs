@@ -59,7 +59,7 @@ impl<'a> Document<'a> {
         let extensions = Extensions::new(&value, is_bare)?;
         // The JSON tree is consumed below. The JSON is parsed again only to quote a value in an error.
         let again = || json::parse(json).unwrap_or_default();
-        let root: Root = faults::read(value, again)?;
+        let root = faults::read(value, Root::from_slice, again)?;
         positions_exist(&root)?;
         validate(&root, again)?;
         let buffers = root.buffers.iter().map(|_| OnceCell::new()).collect();

@@ -2,6 +2,7 @@
 
 use gltf_json::extensions::texture::TextureTransform;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::draco::Draco;
@@ -153,16 +154,17 @@ fn each<'a, T>(
 }
 
 /// Reads the extension `name` of the object at `path`; `None` if the object does not have it.
-pub fn extension<'a, T: Deserialize<'a>>(
-    object: &'a Value,
+pub fn extension<T: DeserializeOwned>(
+    object: &Value,
     name: &str,
     path: &str,
 ) -> Result<Option<T>, InputError> {
     let Some(given) = object.get("extensions").and_then(|all| all.get(name)) else { return Ok(None) };
-    faults::read(given, || given.clone()).map(Some).map_err(|error| {
+    let parse = |text: &[u8]| serde_json::from_slice(text);
+    faults::read(given.clone(), parse, || given.clone()).map(Some).map_err(|error| {
         let path = format!("{path}.extensions.{name}");
         let InputError { path: field, value, bound } = error;
-        let path = if field == "glTF" { path } else { format!("{path}.{field}") };
+        let path = if field.is_empty() { path } else { format!("{path}.{field}") };
         InputError { path, value, bound }
     })
 }

@@ -4,13 +4,10 @@ use std::fmt::Debug;
 
 use gltf_json::validation::Error as Fault;
 use gltf_json::{accessor, animation, buffer, camera, material, mesh, texture};
-use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use crate::InputError;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::error::json::refused_value;
-use crate::error::json::shown;
+use crate::error::json::{message, refused_value, shown};
 
 /// Major version of glTF that is supported; any minor version is accepted.
 const MAJOR: &str = "2";
@@ -36,34 +33,85 @@ pub fn check_version(document: &Value) -> Result<(), InputError> {
     Ok(())
 }
 
-/// Converts JSON to a `T`. `document` gives the same JSON again, to quote a value in an error.
+/// Converts JSON to a `T`. The JSON is consumed; `document` gives it again, to quote a value in an error.
 ///
-/// In browsers, an error has no path: it would take 220 kB of code.
-pub fn read<'de, T: Deserialize<'de>>(
-    json: impl Deserializer<'de, Error = serde_json::Error>,
+/// `parse` reads the JSON as text, so that the reader of `Root` is the one that gltf-json was compiled with.
+pub fn read<T>(
+    json: Value,
+    parse: impl FnOnce(&[u8]) -> serde_json::Result<T>,
     document: impl FnOnce() -> Value,
 ) -> Result<T, InputError> {
-    #[cfg(not(target_arch = "wasm32"))]
-    let read = serde_path_to_error::deserialize(json).map_err(|error| of_type(&document(), &error));
-    #[cfg(target_arch = "wasm32")]
-    let read =
-        T::deserialize(json).map_err(|error| InputError::new("glTF", shown(&document()), error.to_string()));
-    read
+    let text = json.to_string();
+    drop(json);
+    parse(text.as_bytes()).map_err(|error| of_type(&document(), &error))
 }
 
-/// Error for a value of the wrong type, or with a missing field.
-#[cfg(not(target_arch = "wasm32"))]
-fn of_type(document: &Value, error: &serde_path_to_error::Error<serde_json::Error>) -> InputError {
-    let path = match error.path().to_string() {
-        root if root == "." => String::new(),
-        path => path,
+/// Error for a value of the wrong type, or with a missing field. `document` was written without spaces and line breaks.
+fn of_type(document: &Value, error: &serde_json::Error) -> InputError {
+    let message = message(error);
+    // Only here, serde_json counts the byte that it looks at, too.
+    let is_in_front = message == "trailing characters";
+    let stop = Stop { column: error.column() - usize::from(is_in_front), is_in_front };
+    let Some((path, value)) = stop.find(document, String::new(), &mut 0) else {
+        return InputError::new("", "unreadable", message);
     };
-    let message = error.inner().to_string();
     if let Some((field, _)) = message.strip_prefix("missing field `").and_then(|rest| rest.split_once('`')) {
         let path = if path.is_empty() { field.to_owned() } else { format!("{path}.{field}") };
         return InputError::new(path, "missing", "must be given");
     }
-    refused_value(document, error).unwrap_or_else(|| InputError::new(path, "unreadable", message))
+    let bound = match message.as_str() {
+        "trailing characters" => "must not be there: the list has enough elements without it",
+        "number out of range" => "must be finite as a float of 32 bits",
+        _ => {
+            let refused = refused_value(&path, value, error);
+            return refused.unwrap_or_else(|| InputError::new(path, shown(value), message));
+        }
+    };
+    InputError::new(path, shown(value), bound)
+}
+
+/// Where serde_json stopped.
+struct Stop {
+    /// Number of bytes that it had read.
+    column: usize,
+    /// Whether it stopped in front of an element that a list should not have. Otherwise it has read a whole value, or nothing of a
+    /// list or object, or its first byte.
+    is_in_front: bool,
+}
+
+impl Stop {
+    /// Looks for the value in `value`, which begins after `at` bytes. Moves `at` to its end.
+    fn find<'a>(&self, value: &'a Value, path: String, at: &mut usize) -> Option<(String, &'a Value)> {
+        let begin = *at;
+        let is_scalar = !value.is_array() && !value.is_object();
+        if begin == self.column && (self.is_in_front || !is_scalar) {
+            return Some((path, value));
+        }
+        // An element has `[` or `,` before it, and a member its name and `:` too.
+        let within = match value {
+            Value::Array(elements) => elements.iter().enumerate().find_map(|(index, element)| {
+                *at += 1;
+                self.find(element, format!("{path}[{index}]"), at)
+            }),
+            Value::Object(members) => members.iter().find_map(|(name, member)| {
+                *at += 1 + Value::from(name.as_str()).to_string().len() + 1;
+                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                self.find(member, path, at)
+            }),
+            scalar => {
+                *at += scalar.to_string().len();
+                None
+            }
+        };
+        if within.is_some() {
+            return within;
+        }
+        if !is_scalar {
+            *at = (*at + 1).max(begin + 2);
+        }
+        let is_read = *at == self.column || !is_scalar && begin + 1 == self.column;
+        (is_read && !self.is_in_front).then_some((path, value))
+    }
 }
 
 /// Error for an invalid value of the right type.
