@@ -11,6 +11,7 @@ use super::{Eye, SIZE, bound, shown};
 use crate::endless::{between, config, small_nodes};
 use crate::frame::device;
 use crate::raw::Raw;
+use crate::rays::pixels_beside;
 
 /// Samples along an edge of the square that the test looks at.
 const SAMPLES: u32 = 96;
@@ -166,7 +167,9 @@ fn ground_that_morphs_has_its_velocity() {
         println!(
             "{seen} pixels, {worst} of the bound, heights off by {drawn}, at most {largest}, morph {morph} bounds"
         );
-        assert!(seen == found.positions.len() && drawn < 1e-3, "{seen} pixels, heights off by {drawn}");
+        // The ground rises by less than one in ten, and a pixel is as wide as the spacing of samples.
+        let most = 1e-3 + 0.1 * pixels_beside() * stage.config.terrain_scale;
+        assert!(seen == found.positions.len() && drawn < most, "{seen} pixels, heights off by {drawn}");
         assert!(worst <= 1.0, "{worst} of the bound");
         assert!(still || morph > 5.0, "the ground does not morph: {morph} bounds");
     }

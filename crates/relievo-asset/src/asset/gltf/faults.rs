@@ -46,10 +46,10 @@ pub fn read<T>(
     parse(text.as_bytes()).map_err(|error| of_type(&document(), &error))
 }
 
-/// Error for a value of the wrong type, or with a missing field. `document` was written without spaces and line breaks.
+/// Error for a value of the wrong type, or with a missing field. The text that was read is `document` on one line, without spaces.
 fn of_type(document: &Value, error: &serde_json::Error) -> InputError {
     let message = message(error);
-    // Only here, serde_json counts the byte that it looks at, too.
+    // Only the column of this error counts the byte that comes next.
     let is_in_front = message == "trailing characters";
     let stop = Stop { column: error.column() - usize::from(is_in_front), is_in_front };
     let Some((path, value)) = stop.find(document, String::new(), &mut 0) else {
