@@ -55,7 +55,7 @@ impl Weighter<String, Bytes> for InBytes {
 
 impl Weighter<MeshKey, Arc<Resource>> for InBytes {
     fn weight(&self, _: &MeshKey, mesh: &Arc<Resource>) -> u64 {
-        mesh.memory().max(1) as u64
+        mesh.memory().max(1)
     }
 }
 
