@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::asset::decode_image;
+use crate::asset::{decode_image, open_image};
 use crate::shared::surface::ray;
 use crate::{Error, InputError};
 
@@ -161,8 +161,7 @@ const NO_ALPHA: &str = "has no alpha channel to take heights from";
 /// # Errors
 /// [`Error::File`] if the file cannot be read or decoded.
 pub fn open(path: &Path) -> Result<image::DynamicImage, Error> {
-    let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
-    decode(&bytes).map_err(|error| Error::file(path, error))
+    open_image(path, limits())
 }
 
 /// Decodes an image from bytes. The size is checked first: no edge may be longer than [`MAP_EDGE`].
@@ -170,10 +169,14 @@ pub fn open(path: &Path) -> Result<image::DynamicImage, Error> {
 /// # Errors
 /// Errors of the crate `image`: invalid data, or an edge that is too long.
 pub fn decode(bytes: &[u8]) -> Result<image::DynamicImage, image::ImageError> {
+    decode_image(bytes, limits())
+}
+
+fn limits() -> image::Limits {
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MAP_EDGE);
     limits.max_image_height = Some(MAP_EDGE);
-    decode_image(bytes, limits)
+    limits
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use image::Pixel as _;
 use image::imageops::{FilterType, resize};
 
 use crate::Error;
-use crate::asset::decode_image;
+use crate::asset::open_image;
 use crate::srgb;
 use crate::terrain::config::{BuiltIn, Zone, ZoneTexture};
 
@@ -38,9 +38,7 @@ impl TerrainTexture {
     /// # Errors
     /// [`Error::File`] when the image cannot be read.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
-        let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
-        let image = decode_image(&bytes, image::Limits::default());
-        Ok(Self::from_image(&image.map_err(|error| Error::file(path, error))?))
+        Ok(Self::from_image(&open_image(path, image::Limits::default())?))
     }
 
     /// Converts an image to a texture of [`TEXTURE_SIZE`]² texels. The height map is the image's alpha channel or, without alpha,

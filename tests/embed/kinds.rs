@@ -313,7 +313,7 @@ fn places_numbers_and_motion_are_those_of_rays() {
         let (now, number) = (world.scenery(), world.object.number());
         let right = shots.compared(&now, &last, [&moved(), &camera()], number);
         println!("{}: {right:?}", sample.name);
-        // Of a character's small triangles, few pixels are left where vertices are rounded.
+        // Where vertices are rounded, the edges of small triangles decide more pixels, and fewer are compared.
         let fewest = if is_coarse() { 15 } else { 60 };
         assert!(right.seen > fewest, "{}: {right:?}", sample.name);
         // Pixels of which a triangle's edge is nearer than rounding are few.

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     ElevationInfo, ElevationLayout, ElevationSource, ElevationTile, ElevationTiles, TILE_SIZE, TileNumber,
 };
-use crate::asset::decode_image;
+use crate::asset::open_image;
 use crate::terrain::config::{from_json_object, read_text};
 use crate::{Error, InputError};
 
@@ -213,8 +213,7 @@ fn tile_name(TileNumber { level, at: [column, row] }: TileNumber) -> String {
 }
 
 fn read_heights(path: &Path) -> Result<Vec<i32>, Error> {
-    let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
-    let image = decode_image(&bytes, Limits::default()).map_err(|error| Error::file(path, error))?;
+    let image = open_image(path, Limits::default())?;
     let DynamicImage::ImageLumaA16(image) = image else {
         return Err(Error::file(path, "must be a PNG of 16-bit grey and alpha"));
     };

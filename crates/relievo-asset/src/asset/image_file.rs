@@ -2,11 +2,12 @@
 
 use std::io::Cursor;
 use std::ops::Deref;
+use std::path::Path;
 use std::sync::{Arc, LazyLock, OnceLock};
 
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, ImageResult, Limits, RgbaImage};
 
-use crate::InputError;
+use crate::{Error, InputError};
 
 /// An image of a model, the top row first. Copies share their texels.
 ///
@@ -80,6 +81,15 @@ pub fn decode_image(bytes: &[u8], limits: Limits) -> ImageResult<DynamicImage> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
     reader.limits(limits);
     reader.decode()
+}
+
+/// Reads an image file with [`decode_image`]. The format is that of the content, whatever the name ends in.
+///
+/// # Errors
+/// [`Error::File`] if the file cannot be read or decoded.
+pub fn open_image(path: &Path, limits: Limits) -> Result<DynamicImage, Error> {
+    let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
+    decode_image(&bytes, limits).map_err(|error| Error::file(path, error))
 }
 
 /// Formats of the images of models.

@@ -57,9 +57,14 @@ impl<'a> Document<'a> {
         let value = json::parse(json)?;
         faults::check_version(&value)?;
         let extensions = Extensions::new(&value, is_bare)?;
-        // The JSON tree is consumed below. The JSON is parsed again only to quote a value in an error.
+        // The JSON is parsed again only to quote a value in an error.
         let again = || json::parse(json).unwrap_or_default();
-        let root = faults::read(value, Root::from_slice, again)?;
+        let root = {
+            let text = value.to_string();
+            // The tree is much larger than its text.
+            drop(value);
+            faults::read(&text, Root::from_slice, again)?
+        };
         positions_exist(&root)?;
         validate(&root, again)?;
         let buffers = root.buffers.iter().map(|_| OnceCell::new()).collect();

@@ -161,7 +161,7 @@ pub fn extension<T: DeserializeOwned>(
 ) -> Result<Option<T>, InputError> {
     let Some(given) = object.get("extensions").and_then(|all| all.get(name)) else { return Ok(None) };
     let parse = |text: &[u8]| serde_json::from_slice(text);
-    faults::read(given.clone(), parse, || given.clone()).map(Some).map_err(|error| {
+    faults::read(&given.to_string(), parse, || given.clone()).map(Some).map_err(|error| {
         let path = format!("{path}.extensions.{name}");
         let InputError { path: field, value, bound } = error;
         let path = if field.is_empty() { path } else { format!("{path}.{field}") };

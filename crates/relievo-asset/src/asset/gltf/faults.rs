@@ -33,16 +33,14 @@ pub fn check_version(document: &Value) -> Result<(), InputError> {
     Ok(())
 }
 
-/// Converts JSON to a `T`. The JSON is consumed; `document` gives it again, to quote a value in an error.
+/// Converts JSON to a `T`. The text is that of a [`Value`], which `document` gives again to quote a value in an error.
 ///
-/// `parse` reads the JSON as text, so that the reader of `Root` is the one that gltf-json was compiled with.
+/// `parse` reads text, so that the reader of `Root` is the one that gltf-json was compiled with.
 pub fn read<T>(
-    json: Value,
+    text: &str,
     parse: impl FnOnce(&[u8]) -> serde_json::Result<T>,
     document: impl FnOnce() -> Value,
 ) -> Result<T, InputError> {
-    let text = json.to_string();
-    drop(json);
     parse(text.as_bytes()).map_err(|error| of_type(&document(), &error))
 }
 
