@@ -8,6 +8,8 @@ SHELL := /bin/bash
 export XDG_RUNTIME_DIR ?= /tmp
 CARGO ?= cargo
 ONLY ?=
+# How `adapter` compiles the program that looks for one.
+PROGRAM =
 OUT ?= target/demo
 PAGE ?= target/page
 PORT ?= 8080
@@ -15,13 +17,14 @@ SCENE ?= examples/scenes/ruins.json
 
 .PHONY: demo test test-page test-s3 bench bless lint shaders view web serve looks session setup adapter browser wasm
 
+# Without the viewer and the server, which the demo has no use for, and which take as long to compile as all the rest.
+demo: PROGRAM = --no-default-features
 demo: adapter
-	$(CARGO) run --bin relievo -- demo --out $(OUT)
+	$(CARGO) run $(PROGRAM) --bin relievo -- demo --out $(OUT)
 	@echo "open $(OUT)/index.html"
 
 test: browser
 	$(CARGO) test
-	$(CARGO) test -p relievo-shaders
 
 # The viewer's page in Chromium. It compiles the page first, unless RELIEVO_PAGE is the folder that `make web` wrote.
 test-page: browser
@@ -32,8 +35,9 @@ test-s3: setup
 	scripts/s3.sh $(CARGO) test --features relievo-delivery/s3 --test s3
 
 # The demo's scene in the viewer, with a window.
+view: PROGRAM = --release
 view: adapter
-	$(CARGO) run --release --bin relievo -- view $(SCENE)
+	$(CARGO) run $(PROGRAM) --bin relievo -- view $(SCENE)
 
 # The page with the viewer, and the sizes of its files.
 web: wasm
@@ -63,12 +67,13 @@ bless: adapter
 
 # The generated shaders, after a change of kernels/, wgsl/ or crates/relievo-shaders/.
 shaders: setup
-	$(CARGO) run -p relievo-shaders
+	$(CARGO) run --bin relievo-shaders
 
 lint: setup
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --all-targets -- -D warnings
 	$(CARGO) clippy --test page -- -D warnings
+	$(CARGO) clippy --no-default-features --bin relievo -- -D warnings
 	$(CARGO) clippy -p relievo -p relievo-samples --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps --document-private-items
 
@@ -77,7 +82,7 @@ setup:
 
 # Opens a device, which tells more than a driver's file.
 adapter:
-	@CARGO=$(CARGO) scripts/setup.sh adapter
+	@CARGO=$(CARGO) PROGRAM=$(PROGRAM) scripts/setup.sh adapter
 
 wasm: setup
 	@CARGO=$(CARGO) scripts/setup.sh wasm

@@ -3,7 +3,7 @@
 # `browser` that there is the Chromium that the tests compile shaders and draw a scene in, a display for windows without a
 # screen (Xvfb), and a Rust that compiles for browsers, with `wasm` that Rust alone:
 # installs Debian's packages as root, and otherwise says the one command to run. Does nothing, and needs no network, where
-# all is there.
+# all is there. PROGRAM has the arguments of cargo for the program that looks for an adapter.
 set -euo pipefail
 cargo=${CARGO:-cargo}
 
@@ -31,7 +31,7 @@ have_wasm() {
 }
 # A driver's file may be there without its library or its hardware: only opening a device tells.
 have_adapter() {
-    "$cargo" run --quiet --bin relievo -- info >/dev/null 2>&1
+    "$cargo" run --quiet ${PROGRAM:-} --bin relievo -- info >/dev/null 2>&1
 }
 provide() {
     if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
@@ -62,10 +62,10 @@ fi
 [ ${#missing[@]} = 0 ] || provide "${missing[@]}"
 
 [ "${1:-}" = adapter ] || exit 0
-"$cargo" build --bin relievo
+"$cargo" build ${PROGRAM:-} --bin relievo
 have_adapter && exit 0
 # A driver that was chosen by name is the user's business.
 if [ "$(uname -s)" = Linux ] && [ -z "${VK_ICD_FILENAMES:-}${VK_DRIVER_FILES:-}${RELIEVO_ADAPTER:-}" ]; then
     provide mesa-vulkan-drivers
 fi
-have_adapter || { "$cargo" run --quiet --bin relievo -- info >/dev/null; exit 1; }
+have_adapter || { "$cargo" run --quiet ${PROGRAM:-} --bin relievo -- info >/dev/null; exit 1; }

@@ -1,80 +1,50 @@
-//! Parallel iterators: rayon's, and in browsers, where there are no threads, the same calls on one thread.
+//! Maps over all threads: rayon's, and in browsers, where there are no threads, over one.
 
+use std::sync::{Mutex, PoisonError};
+
+/// The values of `of` at 0 to `count` − 1.
+pub fn map_range<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    mapped(count, &of)
+}
+
+/// The values of `of` at `items`.
+pub fn map<I: Sync, T: Send>(items: &[I], of: impl Fn(&I) -> T + Sync) -> Vec<T> {
+    map_range(items.len(), |at| of(&items[at]))
+}
+
+fn mapped<T: Send>(count: usize, of: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
+    // Several parts a thread, so that no thread waits long for the last.
+    let length = count.div_ceil(16 * threads()).max(1);
+    let parts: Vec<Mutex<Vec<T>>> = (0..count.div_ceil(length)).map(|_| Mutex::default()).collect();
+    for_each(parts.len(), &|part| {
+        let made = (part * length..count.min((part + 1) * length)).map(of).collect();
+        *parts[part].lock().unwrap_or_else(PoisonError::into_inner) = made;
+    });
+    let mut all = Vec::with_capacity(count);
+    for part in parts {
+        all.append(&mut part.into_inner().unwrap_or_else(PoisonError::into_inner));
+    }
+    all
+}
+
+// With `dyn`, rayon's iterators are compiled once, and not for each closure.
 #[cfg(not(target_arch = "wasm32"))]
-pub use rayon::prelude;
+fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    use rayon::prelude::*;
+    (0..count).into_par_iter().for_each(work);
+}
 
 #[cfg(target_arch = "wasm32")]
-pub mod prelude {
-    use std::iter::{Enumerate, FlatMap, Map, Zip};
-    use std::slice::{Iter, IterMut};
+fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).for_each(work);
+}
 
-    /// An iterator with the methods of rayon's.
-    pub struct Serial<I>(I);
+#[cfg(not(target_arch = "wasm32"))]
+fn threads() -> usize {
+    rayon::current_num_threads()
+}
 
-    impl<I: Iterator> Serial<I> {
-        pub fn map<T, F: FnMut(I::Item) -> T>(self, of: F) -> Serial<Map<I, F>> {
-            Serial(self.0.map(of))
-        }
-
-        pub fn flat_map<T: IntoIterator, F: FnMut(I::Item) -> T>(self, of: F) -> Serial<FlatMap<I, T, F>> {
-            Serial(self.0.flat_map(of))
-        }
-
-        pub fn enumerate(self) -> Serial<Enumerate<I>> {
-            Serial(self.0.enumerate())
-        }
-
-        pub fn zip<J: IntoIterator>(self, other: J) -> Serial<Zip<I, J::IntoIter>> {
-            Serial(self.0.zip(other))
-        }
-
-        pub fn for_each(self, of: impl FnMut(I::Item)) {
-            self.0.for_each(of);
-        }
-
-        pub fn collect<C: FromIterator<I::Item>>(self) -> C {
-            self.0.collect()
-        }
-
-        pub fn reduce(
-            self,
-            start: impl Fn() -> I::Item,
-            both: impl FnMut(I::Item, I::Item) -> I::Item,
-        ) -> I::Item {
-            self.0.fold(start(), both)
-        }
-    }
-
-    impl<I: Iterator> IntoIterator for Serial<I> {
-        type Item = I::Item;
-        type IntoIter = I;
-
-        fn into_iter(self) -> I {
-            self.0
-        }
-    }
-
-    pub trait IntoParallelIterator: IntoIterator + Sized {
-        fn into_par_iter(self) -> Serial<Self::IntoIter> {
-            Serial(self.into_iter())
-        }
-    }
-
-    impl<T: IntoIterator> IntoParallelIterator for T {}
-
-    pub trait ParallelSlice<T> {
-        fn par_iter(&self) -> Serial<Iter<'_, T>>;
-
-        fn par_iter_mut(&mut self) -> Serial<IterMut<'_, T>>;
-    }
-
-    impl<T> ParallelSlice<T> for [T] {
-        fn par_iter(&self) -> Serial<Iter<'_, T>> {
-            Serial(self.iter())
-        }
-
-        fn par_iter_mut(&mut self) -> Serial<IterMut<'_, T>> {
-            Serial(self.iter_mut())
-        }
-    }
+#[cfg(target_arch = "wasm32")]
+fn threads() -> usize {
+    1
 }

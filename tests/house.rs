@@ -589,4 +589,12 @@ fn the_program_and_the_tests_share_one_build() {
     let twice: Vec<_> =
         program.iter().filter(|(hash, _)| !tests.contains_key(hash)).map(|(_, unit)| unit).collect();
     assert!(program.len() > 100 && twice.is_empty(), "see crates/relievo-cli/Cargo.toml: {twice:#?}");
+    // The program of `make demo`, which is compiled for itself.
+    let demo = units(&["build", "--bin", "relievo", "--no-default-features"]);
+    let twice: Vec<_> =
+        demo.iter().filter(|(hash, _)| !tests.contains_key(hash)).map(|(_, unit)| unit).collect();
+    assert!(
+        twice.iter().all(|unit| unit.contains("relievo-cli")) && demo.len() < program.len(),
+        "{twice:#?}"
+    );
 }

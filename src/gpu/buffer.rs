@@ -14,6 +14,69 @@ use crate::InputError;
 /// Granularity of buffer sizes, in bytes.
 const ROOM: usize = 16;
 
+// What needs no type stands outside of the generic types: it is compiled once.
+
+/// Creates a storage buffer of at least `bytes` bytes.
+fn storage(gpu: &Gpu, label: &'static str, bytes: usize) -> Result<(wgpu::Buffer, Arc<Held>), GpuError> {
+    let size = bytes.next_multiple_of(ROOM) as u64;
+    if size > gpu.max_binding() {
+        return Err(GpuError::Limit {
+            pass: label,
+            limit: "maxStorageBufferBindingSize",
+            needed: size,
+            available: gpu.max_binding(),
+            remedy: "split the batch",
+        });
+    }
+    gpu.memory().check(label, size)?;
+    let usage = wgpu::BufferUsages::STORAGE
+        | wgpu::BufferUsages::VERTEX
+        | wgpu::BufferUsages::INDEX
+        | wgpu::BufferUsages::INDIRECT
+        | wgpu::BufferUsages::COPY_SRC
+        | wgpu::BufferUsages::COPY_DST;
+    Ok((create(gpu, label, size, usage)?, Arc::new(gpu.memory().hold(label, size))))
+}
+
+fn create(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> Result<wgpu::Buffer, GpuError> {
+    gpu.scoped(|| gpu.raw_buffer(label, size, usage))
+}
+
+fn uniform(gpu: &Gpu, label: &str, bytes: &[u8]) -> Result<wgpu::Buffer, GpuError> {
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    let raw = create(gpu, label, bytes.len().next_multiple_of(16) as u64, usage)?;
+    write(gpu, &raw, 0, bytes)?;
+    Ok(raw)
+}
+
+fn check_fits(len: usize, first: usize, count: usize) -> Result<(), GpuError> {
+    if first.saturating_add(count) > len {
+        let reason = format!("{count} elements from {first} on do not fit a buffer of {len}");
+        return Err(GpuError::Validation { reason });
+    }
+    Ok(())
+}
+
+fn check_holds(len: usize, field: &str, needed: usize) -> Result<(), InputError> {
+    if len >= needed {
+        return Ok(());
+    }
+    Err(InputError::new(field, format!("[{len} elements]"), format!("must hold at least {needed}")))
+}
+
+/// Replaces the bytes from `offset` on.
+fn write(gpu: &Gpu, raw: &wgpu::Buffer, offset: usize, bytes: &[u8]) -> Result<(), GpuError> {
+    gpu.scoped(|| gpu.queue().write_buffer(raw, offset as u64, bytes))
+}
+
+/// Reads the first `size` bytes.
+async fn read(gpu: &Gpu, raw: &wgpu::Buffer, size: u64) -> Result<Vec<u8>, GpuError> {
+    let answer = Readback::start(gpu, raw, size)?.answer().await;
+    // The error of the copy itself is more precise than the error of the failed mapping.
+    gpu.check_async().await?;
+    answer
+}
+
 /// A storage buffer of `len` elements. It is also usable as a vertex, index and indirect buffer, and as source and destination
 /// of copies.
 #[derive(Debug, Clone)]
@@ -34,29 +97,8 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// [`GpuError::Limit`] if the buffer exceeds the largest storage binding; [`GpuError::OutOfMemory`] if there is not enough
     /// memory.
     pub fn new(gpu: &Gpu, label: &'static str, len: usize) -> Result<Self, GpuError> {
-        let size = (len.max(1) * size_of::<T>()).next_multiple_of(ROOM) as u64;
-        if size > gpu.max_binding() {
-            return Err(GpuError::Limit {
-                pass: label,
-                limit: "maxStorageBufferBindingSize",
-                needed: size,
-                available: gpu.max_binding(),
-                remedy: "split the batch",
-            });
-        }
-        gpu.memory().check(label, size)?;
-        let usage = wgpu::BufferUsages::STORAGE
-            | wgpu::BufferUsages::VERTEX
-            | wgpu::BufferUsages::INDEX
-            | wgpu::BufferUsages::INDIRECT
-            | wgpu::BufferUsages::COPY_SRC
-            | wgpu::BufferUsages::COPY_DST;
-        let raw = gpu.scoped(|| {
-            let descriptor =
-                wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
-            gpu.device().create_buffer(&descriptor)
-        })?;
-        Ok(Self { raw, _held: Arc::new(gpu.memory().hold(label, size)), len, element: PhantomData })
+        let (raw, held) = storage(gpu, label, len.max(1) * size_of::<T>())?;
+        Ok(Self { raw, _held: held, len, element: PhantomData })
     }
 
     /// Creates a buffer that holds `data`.
@@ -94,11 +136,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// # Errors
     /// [`GpuError::Validation`] if the elements reach beyond the buffer's end.
     pub(super) fn has(&self, first: usize, count: usize) -> Result<(), GpuError> {
-        if first.saturating_add(count) > self.len() {
-            let reason = format!("{count} elements from {first} on do not fit a buffer of {}", self.len());
-            return Err(GpuError::Validation { reason });
-        }
-        Ok(())
+        check_fits(self.len, first, count)
     }
 
     /// Replaces `data.len()` elements, starting at element `first`.
@@ -107,8 +145,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// [`GpuError::Validation`] if `data` reaches beyond the buffer's end.
     pub fn write_at(&self, gpu: &Gpu, first: usize, data: &[T]) -> Result<(), GpuError> {
         self.has(first, data.len())?;
-        let offset = (first * size_of::<T>()) as u64;
-        gpu.scoped(|| gpu.queue().write_buffer(&self.raw, offset, bytemuck::cast_slice(data)))
+        write(gpu, &self.raw, first * size_of::<T>(), bytemuck::cast_slice(data))
     }
 
     /// Reads all elements back. The values include all work that was submitted before the future is first polled.
@@ -120,10 +157,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// # Errors
     /// Errors that the device reports.
     pub async fn read(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
-        let answer = Readback::start(gpu, &self.raw, self.content_bytes())?.answer().await;
-        // The error of the copy itself is more precise than the error of the failed mapping.
-        gpu.check_async().await?;
-        let bytes = answer?;
+        let bytes = read(gpu, &self.raw, (self.len * size_of::<T>()) as u64).await?;
         // The mapped bytes may be unaligned. So the elements are copied, not cast in place.
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
@@ -136,10 +170,6 @@ impl<T: bytemuck::Pod> Buffer<T> {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn read_blocking(&self, gpu: &Gpu) -> Result<Vec<T>, GpuError> {
         gpu.block_on(self.read(gpu))
-    }
-
-    fn content_bytes(&self) -> u64 {
-        (self.len * size_of::<T>()) as u64
     }
 
     /// The underlying wgpu buffer.
@@ -168,11 +198,7 @@ impl<T: bytemuck::Pod> Buffer<T> {
     /// # Errors
     /// [`InputError`] that names `field`, if the buffer holds fewer.
     pub fn check_holds(&self, field: &str, needed: usize) -> Result<(), InputError> {
-        if self.len >= needed {
-            return Ok(());
-        }
-        let value = format!("[{} elements]", self.len);
-        Err(InputError::new(field, value, format!("must hold at least {needed}")))
+        check_holds(self.len, field, needed)
     }
 
     /// Allocated size of the buffer in bytes, including the rounding.
@@ -194,17 +220,7 @@ impl<T: ShaderSize + WriteInto> Uniform<T> {
     /// # Errors
     /// [`GpuError::OutOfMemory`].
     pub fn new(gpu: &Gpu, label: &'static str, value: &T) -> Result<Self, GpuError> {
-        let raw = gpu.scoped(|| {
-            gpu.device().create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: T::SHADER_SIZE.get().next_multiple_of(16),
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        })?;
-        let uniform = Self { raw, value: PhantomData };
-        uniform.write(gpu, value)?;
-        Ok(uniform)
+        Ok(Self { raw: uniform(gpu, label, &uniform_bytes(value)?)?, value: PhantomData })
     }
 
     /// Replaces the value in the buffer.
@@ -212,8 +228,7 @@ impl<T: ShaderSize + WriteInto> Uniform<T> {
     /// # Errors
     /// Errors that the device reports.
     pub fn write(&self, gpu: &Gpu, value: &T) -> Result<(), GpuError> {
-        let bytes = uniform_bytes(value)?;
-        gpu.scoped(|| gpu.queue().write_buffer(&self.raw, 0, &bytes))
+        write(gpu, &self.raw, 0, &uniform_bytes(value)?)
     }
 
     /// The underlying wgpu buffer.

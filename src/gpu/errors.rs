@@ -153,13 +153,21 @@ impl Gpu {
     /// # Errors
     /// Out-of-memory, validation and internal errors that `work` causes, and the errors of [`Gpu::check`].
     pub fn scoped<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
-        self.errors.check()?;
-        let scopes =
-            [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation]
-                .map(|filter| self.device.push_error_scope(filter));
+        let scopes = self.push()?;
         let done = work();
         self.pop(scopes)?;
         Ok(done)
+    }
+
+    /// Pushes nested error scopes.
+    ///
+    /// # Errors
+    /// Errors that were reported before.
+    fn push(&self) -> Result<[wgpu::ErrorScopeGuard; 3], GpuError> {
+        self.errors.check()?;
+        let filters =
+            [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
+        Ok(filters.map(|filter| self.device.push_error_scope(filter)))
     }
 
     /// Pops nested error scopes.

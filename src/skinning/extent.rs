@@ -12,7 +12,7 @@ use crate::animation::Projection;
 use crate::asset::Mesh;
 use crate::asset::Model;
 use crate::asset::influences::Influence;
-use crate::parallel::prelude::*;
+use crate::parallel;
 
 /// Safety factor of [`Extent::stray`] over the sampled maximum. If a vertex's displacement changed linearly between two
 /// poses, its maximum would be at one of the two. The factor covers curvature.
@@ -137,7 +137,7 @@ pub(super) fn stray_of(model: &Model, poses: usize) -> Result<f32, InputError> {
         };
         fading.iter().map(of_mesh).fold(0.0, f32::max)
     };
-    Ok(STRAY_MARGIN * all.par_iter().map(at).reduce(|| 0.0, f32::max))
+    Ok(STRAY_MARGIN * parallel::map(&all, at).into_iter().fold(0.0, f32::max))
 }
 
 /// Bounds of a mesh at the sampled moments: the corners of its box, and the largest displacement of a vertex per unit
@@ -162,8 +162,8 @@ impl Look {
 }
 
 fn look_at(model: &Model, mesh: &Mesh, moments: &[Moment]) -> Look {
-    let looks = moments.par_iter().map(|moment| look(&Pose::new(model, mesh, *moment), mesh));
-    looks.reduce(|| Look::NONE, Look::with)
+    let looks = parallel::map(moments, |moment| look(&Pose::new(model, mesh, *moment), mesh));
+    looks.into_iter().fold(Look::NONE, Look::with)
 }
 
 fn look(pose: &Pose, mesh: &Mesh) -> Look {
@@ -183,7 +183,7 @@ fn radius(model: &Model, mesh: &Mesh, moments: &[Moment], center: Vec3) -> f32 {
         let points = Pose::new(model, mesh, *moment).positions(mesh);
         points.into_iter().map(|point| point.distance(center)).fold(0.0, f32::max)
     };
-    MARGIN * moments.par_iter().map(farthest).reduce(|| 0.0, f32::max)
+    MARGIN * parallel::map(moments, farthest).into_iter().fold(0.0, f32::max)
 }
 
 /// The largest displacement of a vertex per unit of fade λ: the maximum over λ of |Σ min(wᵢ, λ·w₂)·(pᵢ − p₁)|/λ, with

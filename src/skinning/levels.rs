@@ -14,7 +14,7 @@ use crate::asset::mesh::{MAX_LEVELS, MeshLevel};
 use crate::asset::{Mesh, Model};
 use crate::mesh::progressive::{Became, partners};
 use crate::mesh::simplify::{Groups, Simplified, SimplifyOptions, Surface, simplify_watched};
-use crate::parallel::prelude::*;
+use crate::parallel;
 use bodies::Bodies;
 use errors::{Suspects, errors};
 use keys::{Keys, key_moments};
@@ -176,7 +176,7 @@ impl<'a> Group<'a> {
         let poses: Vec<Vec<Vec3>> =
             keys.poses.into_iter().map(|pose| pose.into_iter().map(Vec3::from).collect()).collect();
         let sides: Vec<Sides> =
-            levels.par_iter().map(|level| Sides::new(whole, &simplified, level, &poses, &of)).collect();
+            parallel::map(&levels, |level| Sides::new(whole, &simplified, level, &poses, &of));
         let suspects = Suspects::new(whole, &sides, &poses[0], &of, [unit, bodies.rounding / unit]);
         Ok(Some(Self { whole, unit, simplified, levels, sides, suspects }))
     }

@@ -2,7 +2,7 @@
 
 use super::{border, despike, height, hydraulic, noise, pad, smooth, thermal, wrap};
 use crate::InputError;
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::terrain::border::neighbours;
 use crate::terrain::config::{Border, HeightGenerator, HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;
@@ -34,22 +34,20 @@ pub fn field_with(
     let apron = recipe.apron(margin);
     let (config, features) = (&recipe.config, &recipe.features);
     let width = (config.patch_size + 2 * apron) as usize;
-    let finished = |window: Vec<i32>, injected: &[(u32, u32)]| {
-        let field = finish(recipe, width, injected, window);
+    let injected = recipe.injected(patches, apron);
+    let finished = |at: usize, window: Vec<i32>| {
+        let field = finish(recipe, width, &injected[at], window);
         progress();
         field
     };
-    let injected = recipe.injected(patches, apron);
     // Patches of `blend` depend on each other. All other patches are generated independently from start to end.
     if let Border::Blend(_) = config.border {
         let windows = generate(config, features, patches, apron);
-        return Ok(windows.into_par_iter().zip(&injected).map(|(window, at)| finished(window, at)).collect());
+        return Ok(parallel::map_range(windows.len(), |at| finished(at, windows[at].clone())));
     }
-    let made = |(patch, at): (&[i32; 2], &Vec<_>)| {
-        let window = generate(config, features, std::slice::from_ref(patch), apron).swap_remove(0);
-        finished(window, at)
-    };
-    Ok(patches.par_iter().zip(&injected).map(made).collect())
+    Ok(parallel::map_range(patches.len(), |at| {
+        finished(at, generate(config, features, &patches[at..=at], apron).swap_remove(0))
+    }))
 }
 
 /// Heights of `patches`, each with `apron` samples on every side, before despiking and erosion.
@@ -62,10 +60,9 @@ pub fn generate(
     if config.border == Border::Seamless {
         let window =
             |patch: &[i32; 2]| region(config, features, Window { patch: *patch, apron }.region(config));
-        return patches.par_iter().map(window).collect();
+        return parallel::map(patches, window);
     }
-    let mut fields: Vec<_> =
-        patches.par_iter().map(|patch| wrap::reference::wrap(config, features, *patch)).collect();
+    let mut fields: Vec<_> = parallel::map(patches, |patch| wrap::reference::wrap(config, features, *patch));
     let size = config.patch_size as usize;
     if let Border::Blend(width) = config.border {
         for (index, around) in neighbours(patches).into_iter().enumerate() {
@@ -74,15 +71,10 @@ pub fn generate(
             border::reference::border(&mut rest[0], size, width, around);
         }
     }
-    (surrounds(config, patches).into_par_iter())
-        .map(|around| {
-            pad::reference::pad(
-                size,
-                apron as usize,
-                around.map(|tile| tile.map(|index| fields[index].as_slice())),
-            )
-        })
-        .collect()
+    parallel::map(&surrounds(config, patches), |around| {
+        let around = around.map(|tile| tile.map(|index| fields[index].as_slice()));
+        pad::reference::pad(size, apron as usize, around)
+    })
 }
 
 /// Heights of a region of `seamless` terrain, by the generator of the configuration, before despiking and erosion. The region

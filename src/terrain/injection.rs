@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::terrain::config::{HeightInterpolation, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::field::region;
@@ -63,7 +63,7 @@ impl FeatureOffsets {
                 let offset = own.offset(config, lattice as u32, at.0, at.1, injected.height);
                 (**at, Injected { offset, ..**injected })
             };
-            points.par_iter().map(offset).collect()
+            parallel::map(&points, offset).into_iter().collect()
         };
         Self { lattices: (0..own.lattices.len()).map(with_offsets).collect(), mode: features.mode }
     }

@@ -20,7 +20,7 @@ use crate::frame::{Frame, device, devices};
 use crate::harness::is_coarse;
 use crate::host;
 use crate::raw::Raw;
-use crate::rays::{Triangle, cube, matrix, model, picture, plain};
+use crate::rays::{Triangle, cube, matrix, model, picture, plain, shown};
 use crate::shadow::occluders::{Occluders, Verdict};
 use grass::Grass;
 
@@ -271,11 +271,6 @@ fn carried(now: &Triangle, last: &Triangle, point: DVec3) -> DVec3 {
     let weights = [(point - a).cross(v).dot(normal) / area, u.cross(point - a).dot(normal) / area];
     let [a, b, c] = last.corners;
     a + weights[0] * (b - a) + weights[1] * (c - a)
-}
-
-fn shown(camera: &Camera, place: DVec3) -> [f64; 2] {
-    let clip = camera.clip_from_view.as_dmat4() * camera.view_from_cell.as_dmat4() * place.extend(1.0);
-    [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w]
 }
 
 /// Places, numbers and motion, while instances, cameras and what moves by itself move.

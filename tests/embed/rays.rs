@@ -42,13 +42,21 @@ pub fn pixels_beside() -> f64 {
     if is_coarse() { 1.0 / 32.0 } else { 0.0 }
 }
 
+fn clip_from_world(camera: &Camera) -> DMat4 {
+    camera.clip_from_view.as_dmat4() * camera.view_from_cell.as_dmat4()
+}
+
+/// Where a camera shows a place, as a fraction of the picture, from its upper left.
+pub fn shown(camera: &Camera, place: DVec3) -> [f64; 2] {
+    let clip = clip_from_world(camera) * place.extend(1.0);
+    [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w]
+}
+
 /// The ray through a place of the picture in pixels: where it begins, on the near plane, and its direction.
-pub fn ray(camera: &Camera, pixel: [f64; 2]) -> [DVec3; 2] {
-    let clip_from_world = camera.clip_from_view.as_dmat4() * camera.view_from_cell.as_dmat4();
-    let inverse = clip_from_world.inverse();
-    let [x, y] = [0, 1].map(|axis| 2.0 * pixel[axis] / f64::from(camera.viewport[axis]) - 1.0);
+fn ray(world_from_clip: DMat4, viewport: [u32; 2], pixel: [f64; 2]) -> [DVec3; 2] {
+    let [x, y] = [0, 1].map(|axis| 2.0 * pixel[axis] / f64::from(viewport[axis]) - 1.0);
     let place = |depth: f64| {
-        let point = inverse * DVec4::new(x, -y, depth, 1.0);
+        let point = world_from_clip * DVec4::new(x, -y, depth, 1.0);
         point.truncate() / point.w
     };
     [place(0.0), (place(0.5) - place(0.0)).normalize()]
@@ -102,11 +110,12 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
     let pixels = (0..width * height).map(|at| [at % width, at / width].map(|edge| f64::from(edge) + 0.5));
     let tag = |hit: &Option<Hit>| hit.as_ref().map(|hit| triangles[hit.triangle].tag);
     let balls: Vec<Ball> = triangles.iter().map(Ball::around).collect();
+    let (world_from_clip, off) = (clip_from_world(camera).inverse(), pixels_beside());
     pixels
         .map(|[x, y]| {
-            let middle = ray(camera, [x, y]);
-            let through = |[dx, dy]: [f64; 2]| ray(camera, [x + dx, y + dy]);
-            let edge = 0.01 + 2.0 * pixels_beside();
+            let through = |[dx, dy]: [f64; 2]| ray(world_from_clip, camera.viewport, [x + dx, y + dy]);
+            let middle = through([0.0; 2]);
+            let edge = 0.01 + 2.0 * off;
             let beside = [[-edge, 0.0], [edge, 0.0], [0.0, -edge], [0.0, edge]].map(through);
             let apart = [0, 1]
                 .map(|part| beside.iter().map(|ray| (ray[part] - middle[part]).length()).fold(0.0, f64::max));
@@ -115,12 +124,12 @@ pub fn picture(triangles: &[Triangle], camera: &Camera) -> Vec<Result<Option<Hit
             let first = |ray| first_of(triangles, some.iter().copied(), ray);
             let seen = first(middle);
             let is_sure = beside.iter().all(|ray| tag(&first(*ray)) == tag(&seen));
-            let off = pixels_beside();
-            let shown = |hit: Hit| {
+            let with_corners = |hit: Hit| {
                 let corners = [[-off, -off], [off, -off], [-off, off], [off, off]].map(through);
                 Hit { around: corners.map(|ray| on_plane(&triangles[hit.triangle], ray).1), ..hit }
             };
-            if is_sure { Ok(seen.map(shown)) } else { Err(()) }
+            let seen = if off > 0.0 { seen.map(with_corners) } else { seen };
+            if is_sure { Ok(seen) } else { Err(()) }
         })
         .collect()
 }

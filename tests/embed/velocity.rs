@@ -15,7 +15,7 @@ use relievo_samples::maps::BuiltInMap;
 
 use crate::frame::device;
 use crate::raw::Raw;
-use crate::rays::{Triangle, cube, matrix, model, picture, plain};
+use crate::rays::{Triangle, cube, matrix, model, picture, plain, shown};
 use crate::world::World;
 
 const SIZE: [u32; 2] = [96, 64];
@@ -76,13 +76,6 @@ impl Eye {
     fn read(&self, scene: &Scene) -> Vec<[f32; 2]> {
         self.raw.floats(scene.gpu(), 0).into_iter().map(|[x, y, ..]| [x, y]).collect()
     }
-}
-
-/// Where a camera shows a place, as a fraction of the picture, from its upper left.
-fn shown(camera: &Camera, place: DVec3) -> [f64; 2] {
-    let clip_from_world = camera.clip_from_view.as_dmat4() * camera.view_from_cell.as_dmat4();
-    let clip = clip_from_world * place.extend(1.0);
-    [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w]
 }
 
 /// By how much a velocity may be off: a half float is rounded to a neighbour, of which devices choose one, 2^-10 away at

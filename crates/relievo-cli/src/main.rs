@@ -8,6 +8,7 @@ mod cook;
 mod creases;
 mod crowd;
 mod demo;
+#[cfg(feature = "network")]
 mod fetch;
 mod info;
 mod memory;
@@ -17,6 +18,7 @@ mod priorities;
 mod progress;
 mod relief;
 mod scene;
+#[cfg(feature = "network")]
 mod serve;
 mod shaders;
 mod simplify;
@@ -24,6 +26,7 @@ mod skin;
 mod sweep;
 mod terrain;
 mod verify;
+#[cfg(feature = "view")]
 mod view;
 
 use std::error::Error as _;
@@ -53,6 +56,7 @@ enum Command {
     /// Lists the adapters, the driver and limits of the chosen one, and every pass.
     Info,
     Scene(Box<scene::Scene>),
+    #[cfg(feature = "view")]
     View(view::View),
     Terrain(Box<terrain::Terrain>),
     Creases(creases::Creases),
@@ -62,8 +66,11 @@ enum Command {
     Skin(skin::Skin),
     Simplify(Box<simplify::Simplify>),
     Cook(cook::Cook),
+    #[cfg(feature = "network")]
     Serve(Box<serve::Serve>),
+    #[cfg(feature = "network")]
     Export(serve::Export),
+    #[cfg(feature = "network")]
     Fetch(fetch::Fetch),
     Crowd(Box<crowd::Crowd>),
     Sweep(Box<sweep::Sweep>),
@@ -102,6 +109,7 @@ fn main() -> ExitCode {
     let outcome = match arguments.command {
         Command::Info => info::run(&context),
         Command::Scene(command) => command.run(&context),
+        #[cfg(feature = "view")]
         Command::View(command) => command.run(&context),
         Command::Terrain(command) => command.run(&context),
         Command::Creases(command) => command.run(),
@@ -111,8 +119,11 @@ fn main() -> ExitCode {
         Command::Skin(command) => command.run(&context),
         Command::Simplify(command) => command.run(&context),
         Command::Cook(command) => command.run(),
+        #[cfg(feature = "network")]
         Command::Serve(command) => command.run(),
+        #[cfg(feature = "network")]
         Command::Export(command) => command.run(),
+        #[cfg(feature = "network")]
         Command::Fetch(command) => command.run(),
         Command::Crowd(command) => command.run(&context),
         Command::Sweep(command) => command.run(&context),

@@ -12,7 +12,6 @@ use clap::builder::RangedU64ValueParser;
 use relievo::render::Layer;
 use relievo::scene::{Depth, Quality, Transition};
 use relievo::{Error, InputError};
-use relievo_delivery::client::get_scene;
 use relievo_lab::files::Staged;
 use relievo_lab::measure::{CharacterDump, FrameReport, FrameSummary, ObjectReport, Rendering, ScenePlay};
 use relievo_scene_file::LoadedScene;
@@ -141,7 +140,12 @@ impl Scene {
     fn read(&self) -> Result<LoadedScene, Error> {
         let built_ins = &relievo_samples::Samples;
         match self.file.to_str().filter(|text| text.starts_with("http://") || text.starts_with("https://")) {
-            Some(url) => get_scene(url, self.token.as_deref(), built_ins),
+            #[cfg(feature = "network")]
+            Some(url) => relievo_delivery::client::get_scene(url, self.token.as_deref(), built_ins),
+            #[cfg(not(feature = "network"))]
+            Some(url) => {
+                Err(InputError::new("file", url, "must be a file without the feature `network`").into())
+            }
             None => LoadedScene::from_path(&self.file, built_ins),
         }
     }

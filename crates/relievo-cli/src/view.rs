@@ -1,10 +1,10 @@
 //! `relievo view`: the viewer in a window, or one picture of it.
 
-use std::io::Cursor;
 use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
+use relievo::asset::encode_png;
 use relievo::{Error, InputError};
 use relievo_lab::files::write_file;
 use relievo_viewer::{Colors, Options, Start, draw, point};
@@ -83,10 +83,8 @@ impl View {
         };
         let gpu = context.gpu()?;
         let picture = during("drawing", || draw(&gpu, &start, self.size))?;
-        let mut bytes = Cursor::new(Vec::new());
-        let encoded = picture.write_to(&mut bytes, image::ImageFormat::Png);
-        encoded.map_err(|error| Error::output(path, error))?;
-        write_file(path, &bytes.into_inner())?;
+        let encoded = encode_png(self.size, &picture, image::ExtendedColorType::Rgba8);
+        write_file(path, &encoded.map_err(|error| Error::output(path, error))?)?;
         say(path.display())
     }
 

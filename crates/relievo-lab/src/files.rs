@@ -4,7 +4,9 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use image::EncodableLayout;
 use relievo::Error;
+use relievo::asset::encode_png;
 pub use relievo::asset::package::sha256;
 
 /// Files of one folder, staged until all are written. Staged files that are never published are deleted.
@@ -72,14 +74,13 @@ impl Staged {
     ) -> Result<(), Error>
     where
         P: image::Pixel + image::PixelWithColorType,
-        [P::Subpixel]: image::EncodableLayout,
+        [P::Subpixel]: EncodableLayout,
     {
         let path = self.path(name);
         // Encodes in memory first: the image crate drops the error of the last write.
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        let encoded = image.write_to(&mut bytes, image::ImageFormat::Png);
-        encoded.map_err(|error| Error::output(&path, error))?;
-        write_bytes(&path, bytes.get_ref())
+        let (size, texels) = ([image.width(), image.height()], image.as_raw().as_bytes());
+        let encoded = encode_png(size, texels, P::COLOR_TYPE).map_err(|error| Error::output(&path, error))?;
+        write_bytes(&path, &encoded)
     }
 
     /// Removes a file of an earlier run when the others are published.

@@ -515,7 +515,8 @@ fn base_color(model: &Model) -> Result<RgbaImage, InputError> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
+    use image::ExtendedColorType;
+    use relievo::asset::encode_png;
 
     use super::*;
     use crate::NoBuiltIns;
@@ -590,10 +591,9 @@ mod tests {
     fn terrain_has_maps_and_injected_heights() {
         let read = |name: &Path| match name.to_str() {
             Some("map.png") => {
-                let mut bytes = Cursor::new(Vec::new());
-                let image = image::ImageBuffer::from_fn(12, 9, |x, y| image::Luma([(x * 5_000 + y) as u16]));
-                let written = DynamicImage::ImageLuma16(image).write_to(&mut bytes, image::ImageFormat::Png);
-                written.map_err(std::io::Error::other).map(|()| bytes.into_inner())
+                let texels = (0..9).flat_map(|y| (0..12).map(move |x| x * 5_000 + y));
+                let texels: Vec<u8> = texels.flat_map(u16::to_ne_bytes).collect();
+                encode_png([12, 9], &texels, ExtendedColorType::L16).map_err(std::io::Error::other)
             }
             Some("road.json") => {
                 Ok(br#"{"patchCoordinates": [1, 0], "precomputedHeights": [3, 4, 2.5, 5, 6, -1]}"#.to_vec())

@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
+use relievo::asset::encode_png;
 use relievo::gpu::{Gpu, GpuError};
 use relievo::render::Offscreen;
 use relievo::{Error, InputError};
@@ -759,10 +760,10 @@ impl Viewer {
         let egui = self.egui.clone();
         let read = async move {
             let picture = target.read_async(&gpu).await?;
-            let mut bytes = std::io::Cursor::new(Vec::new());
-            let encoded = picture.write_to(&mut bytes, image::ImageFormat::Png);
-            encoded.map_err(|error| Error::output(&name, error))?;
-            let _ = to_host.send(Request::Save { name, bytes: bytes.into_inner() });
+            let size = [picture.width(), picture.height()];
+            let encoded = encode_png(size, &picture, image::ExtendedColorType::Rgba8);
+            let bytes = encoded.map_err(|error| Error::output(&name, error))?;
+            let _ = to_host.send(Request::Save { name, bytes });
             egui.request_repaint();
             Ok::<(), Error>(())
         };

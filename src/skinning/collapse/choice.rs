@@ -9,7 +9,7 @@ use crate::InputError;
 use crate::asset::clip::{Clip, TransformPart};
 use crate::asset::transform::column_major;
 use crate::asset::{Model, Skeleton};
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::skinning::pose::{Moment, bones_at};
 
 /// The largest number of poses per clip in which costs are measured.
@@ -103,7 +103,7 @@ impl<'a> Choice<'a> {
         };
         Ok(Self {
             rest,
-            poses: looked_at(model, POSES)?.par_iter().map(pose).collect(),
+            poses: parallel::map(&looked_at(model, POSES)?, pose),
             stays: stays(model, options)?,
             is_even: (0..skeleton.len()).map(is_even).collect(),
             remap: Remap::new(skeleton),
@@ -191,7 +191,7 @@ impl<'a> Choice<'a> {
             };
             moved.chunk_by(|a, b| a.1.vertex == b.1.vertex).map(of_vertex).fold(0.0, f64::max)
         };
-        let stray = self.poses.par_iter().map(stray).reduce(|| 0.0, f64::max).sqrt();
+        let stray = parallel::map(&self.poses, stray).into_iter().fold(0.0, f64::max).sqrt();
         let origin = self.rest.models[bone].translation;
         let bone_radius = moved.iter().map(|(index, follower)| {
             let at_rest = self.rest.models[group[*index]].transform_point3(follower.local);

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::{CollapseError, looked_at};
 use crate::InputError;
 use crate::asset::{Affine, Mesh, Model};
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::skinning::pose::{Moment, Pose, bones_at, weights_at};
 
 /// Distances in one pose: the largest of any bone, the largest of any vertex, and the sum of squares over all vertices.
@@ -23,7 +23,7 @@ pub(super) fn error(model: &Model, collapsed: &Model, kept: &[usize]) -> Result<
     if moments.is_empty() {
         moments.push(Moment::Rest);
     }
-    let off: Vec<Off> = moments.par_iter().map(|moment| off(model, collapsed, kept, *moment)).collect();
+    let off = parallel::map(&moments, |moment| off(model, collapsed, kept, *moment));
     let vertices: usize = model.meshes.iter().map(Mesh::vertices).sum();
     let squares: f64 = off.iter().map(|off| off.squares).sum();
     let largest = |of: fn(&Off) -> f64| off.iter().map(of).fold(0.0, f64::max) as f32;

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::tree::{Posed, Tree};
 use crate::asset::{Mesh, Model};
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::skinning::pose::{Moment, bones_at, positions_of};
 
 /// The meshes of a level, as indices in the model.
@@ -37,8 +37,9 @@ pub(super) fn errors(model: &Model, levels: &[Level], moments: &[Moment]) -> Vec
         (0..stride).flat_map(|first| moments.iter().skip(first).step_by(stride)).copied().collect();
     for batch in order.chunks(BATCH) {
         let look = |moment: &Moment| pairs.larger(&vertices.points(model, *moment), &known);
-        let largest = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect();
-        known = batch.par_iter().map(look).reduce(|| known.clone(), largest);
+        for own in parallel::map(batch, look) {
+            known.iter_mut().zip(own).for_each(|(known, own)| *known = known.max(own));
+        }
     }
     known.into_iter().map(f64::sqrt).collect()
 }
@@ -170,7 +171,7 @@ impl Pairs {
             let back = Side::new(level, edge / DENSITY[1], &near_fine);
             Coarse { tree, forth, back }
         };
-        let coarse = levels[1..].par_iter().map(coarse).collect();
+        let coarse = parallel::map(&levels[1..], coarse);
         Self { fine, coarse }
     }
 

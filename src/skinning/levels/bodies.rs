@@ -8,7 +8,7 @@ use glam::{Mat3, Vec3};
 use crate::asset::transform::Affine;
 use crate::asset::{Mesh, Model};
 use crate::mesh::simplify::NO_BODY;
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::skinning::palette::reference::palette;
 use crate::skinning::pose::{Moment, bones_at};
 
@@ -40,10 +40,11 @@ impl Bodies {
             let is_rigid = own.squares.iter().zip(&first.squares).map(|(own, first)| is_alike(first, own));
             (is_rigid.collect::<Vec<bool>>(), own.largest)
         };
-        let none = || (vec![true; first.squares.len()], 0.0_f32);
-        let (is_rigid, largest) = moments.par_iter().map(look).reduce(none, |(a, largest), (b, other)| {
-            (a.iter().zip(&b).map(|(a, b)| *a && *b).collect(), largest.max(other))
-        });
+        let (mut is_rigid, mut largest) = (vec![true; first.squares.len()], 0.0_f32);
+        for (own, other) in parallel::map(moments, look) {
+            is_rigid.iter_mut().zip(own).for_each(|(all, own)| *all &= own);
+            largest = largest.max(other);
+        }
         // A bone that is stretched in one skin does not form a body in any skin.
         let mut is_body = vec![true; model.skeleton.len()];
         let bones = skins.iter().flat_map(|(skin, _)| &model.skins[*skin].bones);

@@ -11,7 +11,7 @@ use super::whole::Whole;
 use crate::asset::Model;
 use crate::mesh::nearest::nearest_on_triangle;
 use crate::mesh::simplify::NO_BODY;
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::skinning::pose::{Moment, bones_at};
 
 /// Number of moments between two progress reports.
@@ -50,9 +50,8 @@ impl Suspects {
         bodies: &[u32],
         [unit, rounding]: [f32; 2],
     ) -> Self {
-        let of_level =
-            |(level, sides): (usize, &Sides)| suspects_of(level as u32, sides, first, bodies, rounding);
-        let found: Vec<_> = sides.par_iter().enumerate().map(of_level).collect();
+        let of_level = |level: usize| suspects_of(level as u32, &sides[level], first, bodies, rounding);
+        let found = parallel::map_range(sides.len(), of_level);
         let (mut all, mut triangles, mut least) = (Vec::new(), Vec::new(), Vec::new());
         for (suspects, own, lowest) in found {
             let start = triangles.len() as u32;
@@ -193,7 +192,7 @@ pub(super) fn errors(
             }
             own
         };
-        errors = moments.par_iter().map(look).reduce(|| errors.clone(), larger);
+        errors = parallel::map(moments, look).into_iter().fold(errors, larger);
     }
     ControlFlow::Continue(errors)
 }

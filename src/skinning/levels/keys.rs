@@ -6,7 +6,7 @@
 use glam::{Vec2, Vec3};
 
 use super::whole::Whole;
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::skinning::attribute_weights::TextureArea;
 use crate::skinning::pose::Moment;
 
@@ -33,8 +33,7 @@ pub(super) struct Keys {
 
 impl Keys {
     pub fn new(whole: &Whole<'_>, moments: &[Moment]) -> Self {
-        let mut all: Vec<Key> =
-            key_moments(moments).into_par_iter().map(|moment| Key::new(whole, moment)).collect();
+        let mut all: Vec<Key> = parallel::map(&key_moments(moments), |moment| Key::new(whole, *moment));
         // If several poses are equally large, the first of them is taken.
         let largest = (1..all.len()).rev().max_by(|a, b| all[*a].size.total_cmp(&all[*b].size));
         if let Some(largest) = largest.filter(|largest| all[0].is_unlike(all[*largest].size)) {
@@ -43,7 +42,7 @@ impl Keys {
         }
         let (first, size) = (all[0].moment, all[0].size);
         let unit = power_of_two(size);
-        all.par_iter_mut().for_each(|key| key.points.as_flattened_mut().iter_mut().for_each(|x| *x /= unit));
+        all.iter_mut().for_each(|key| key.points.as_flattened_mut().iter_mut().for_each(|x| *x /= unit));
         let normals = whole.posed_normals(first);
         Self { poses: all.into_iter().map(|key| key.points).collect(), normals, size: size / unit, unit }
     }

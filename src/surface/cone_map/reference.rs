@@ -1,6 +1,6 @@
 //! Cone maps: the CPU reference of `kernels/surface/cone_map.wgsl`.
 
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::shared::surface::cone_map::{LEAST_RISE, NARROWING, OPENING, WIDEST};
 use crate::surface::height_pyramid::PyramidLayout;
 use crate::surface::map::{Address, HeightMap};
@@ -24,8 +24,8 @@ struct Search<'a> {
 impl Search<'_> {
     fn cones(&self) -> Vec<[f32; 2]> {
         let [columns, rows] = self.layout.cells;
-        let cells = (0..columns * rows).into_par_iter();
-        cells.map(|cell| self.cone([(cell % columns) as i32, (cell / columns) as i32])).collect()
+        let cell = |at: usize| [at as u32 % columns, at as u32 / columns].map(|along| along as i32);
+        parallel::map_range((columns * rows) as usize, |at| self.cone(cell(at)))
     }
 
     fn cone(&self, cell: [i32; 2]) -> [f32; 2] {

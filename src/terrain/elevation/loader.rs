@@ -6,13 +6,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use image::{DynamicImage, ImageBuffer, Limits, LumaA};
+use image::{DynamicImage, EncodableLayout as _, ExtendedColorType, Limits, LumaA};
 use serde::{Deserialize, Serialize};
 
 use super::{
     ElevationInfo, ElevationLayout, ElevationSource, ElevationTile, ElevationTiles, TILE_SIZE, TileNumber,
 };
-use crate::asset::open_image;
+use crate::asset::{encode_png, open_image};
 use crate::terrain::config::{from_json_object, read_text};
 use crate::{Error, InputError};
 
@@ -190,10 +190,13 @@ impl ElevationTiles {
                 let word = *height as u32 ^ 0x8000_0000;
                 [(word >> 16) as u16, word as u16]
             });
-            let image: Option<ImageBuffer<LumaA<u16>, _>> =
-                ImageBuffer::from_raw(TILE_SIZE, TILE_SIZE, samples.collect::<Vec<u16>>());
-            let image = image.ok_or_else(|| Error::output(&path, "a tile has another size"))?;
-            DynamicImage::from(image).save(&path).map_err(|error| Error::output(&path, error))?;
+            let samples: Vec<u16> = samples.collect();
+            if samples.len() != 2 * (TILE_SIZE * TILE_SIZE) as usize {
+                return Err(Error::output(&path, "a tile has another size"));
+            }
+            let encoded = encode_png([TILE_SIZE; 2], samples.as_bytes(), ExtendedColorType::La16);
+            let encoded = encoded.map_err(|error| Error::output(&path, error))?;
+            std::fs::write(&path, encoded).map_err(|error| Error::output(&path, error))?;
             let (deviation, second_difference) = (tile.deviation, tile.second_difference);
             entries.push(TileEntry { level: number.level, at: number.at, deviation, second_difference });
             progress();

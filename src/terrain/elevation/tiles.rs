@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::{
     ElevationInfo, ElevationLayout, ElevationMap, ElevationSource, ElevationTile, TILE_SIZE, TileNumber,
 };
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::terrain::config::{HEIGHT_LIMIT, HEIGHT_ONE, TerrainConfig};
 use crate::terrain::features::Features;
 use crate::terrain::field::region;
@@ -48,7 +48,7 @@ impl ElevationTiles {
         let numbers: Vec<TileNumber> =
             (0..=lattice.levels).flat_map(|level| lattice.tiles_of(level)).collect();
         let made = |number: &TileNumber| (*number, Arc::new(lattice.tile(*number, &bent)));
-        let tiles = numbers.par_iter().map(made).collect();
+        let tiles = parallel::map(&numbers, made).into_iter().collect();
         let info = ElevationInfo { layout: map.layout, levels: lattice.levels, apart: lattice.apart };
         Ok(Self { info, tiles })
     }
@@ -114,19 +114,16 @@ impl Lattice {
     fn second_differences(&self) -> Vec<u32> {
         let (width, height) = (self.width, &self.heights);
         let own = |at: usize| i64::from(height[at]);
-        (0..height.len())
-            .into_par_iter()
-            .map(|at| {
-                let (column, row) = (at % width, at / width);
-                if column == 0 || row == 0 || column + 1 == width || row + 1 >= height.len() / width {
-                    return 0;
-                }
-                let along_x = own(at - 1) - 2 * own(at) + own(at + 1);
-                let along_y = own(at - width) - 2 * own(at) + own(at + width);
-                let twist = own(at) + own(at + width + 1) - own(at + 1) - own(at + width);
-                along_x.unsigned_abs().max(along_y.unsigned_abs()).max(twist.unsigned_abs()) as u32
-            })
-            .collect()
+        parallel::map_range(height.len(), |at| {
+            let (column, row) = (at % width, at / width);
+            if column == 0 || row == 0 || column + 1 == width || row + 1 >= height.len() / width {
+                return 0;
+            }
+            let along_x = own(at - 1) - 2 * own(at) + own(at + 1);
+            let along_y = own(at - width) - 2 * own(at) + own(at + width);
+            let twist = own(at) + own(at + width + 1) - own(at + 1) - own(at + width);
+            along_x.unsigned_abs().max(along_y.unsigned_abs()).max(twist.unsigned_abs()) as u32
+        })
     }
 
     /// The tiles of a level in or near the map.

@@ -35,9 +35,9 @@ fn face(key: u32, periods: [u32; 2], lift: f32, at: [f32; 2]) -> (f32, f32) {
 
 /// Sand: wind ripples, bent and broken up by noise, with grains on top.
 fn sand() -> Vec<u8> {
-    let (bends, waves) = (Noise::new(11, [3, 3], 3, 0.5), Noise::new(17, [9, 9], 1, 1.0));
+    let (bends, waves) = (Noise::new(11, [3, 3], 3, 0.5), Noise::octave(17, [9, 9]));
     let (strengths, hills) = (Noise::new(23, [5, 5], 2, 0.5), Noise::new(41, [6, 6], 4, 0.5));
-    let (coarse, fine) = (Noise::new(31, [160, 160], 1, 1.0), Noise::new(32, [251, 251], 1, 1.0));
+    let (coarse, fine) = (Noise::octave(31, [160, 160]), Noise::octave(32, [251, 251]));
     let (heights, grains) = apart(made(|at| {
         let [u, v] = at;
         let phase = 2.0 * u + 17.0 * (v + 0.045 * bends.at(at)) + 0.35 * waves.at(at);
@@ -83,7 +83,7 @@ fn hill() -> Vec<u8> {
 fn snow() -> Vec<u8> {
     let (bends, drifts) = (Noise::new(111, [4, 4], 2, 0.5), Noise::new(113, [3, 7], 4, 0.45));
     let cuts = Noise::new(127, [5, 5], 3, 0.55);
-    let (coarse, fine) = (Noise::new(131, [190, 190], 1, 1.0), Noise::new(137, [256, 256], 1, 1.0));
+    let (coarse, fine) = (Noise::octave(131, [190, 190]), Noise::octave(137, [256, 256]));
     let (heights, sparkles) = apart(made(|[u, v]| {
         let at = [u + 0.03 * bends.at([u, v]), v];
         let sparkle = coarse.at(at) + fine.at(at);
@@ -98,7 +98,7 @@ fn snow() -> Vec<u8> {
 /// Layers of rock with uneven thickness and hardness, broken into blocks. The top edge of the texture is the upper side.
 fn strata() -> Vec<u8> {
     let (folds, tears) = (Noise::new(151, [3, 3], 3, 0.5), Noise::new(157, [11, 17], 5, 0.7));
-    let beds = [(163, 9), (173, 37)].map(|(key, count)| Noise::new(key, [1, count / 3], 1, 1.0));
+    let beds = [(163, 9), (173, 37)].map(|(key, count)| Noise::octave(key, [1, count / 3]));
     let roughness = Noise::new(193, [12, 20], 6, 0.66);
     let (heights, marks) = apart(made(|[u, v]| {
         let (fold, torn) = (0.02 * folds.at([u, v]), 0.010 * tears.at([u, v]));

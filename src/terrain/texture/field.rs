@@ -1,7 +1,7 @@
 //! Scalar fields over the texels of a texture, and operations on these fields: blurs, and colours shaded by heights.
 
 use super::TEXTURE_SIZE;
-use crate::parallel::prelude::*;
+use crate::parallel;
 
 /// Number of texels along an edge of a texture.
 pub const EDGE: usize = TEXTURE_SIZE as usize;
@@ -12,7 +12,7 @@ pub type Field = Vec<f32>;
 /// Evaluates `of` at the centre of every texel, in texture coordinates from 0 to 1. The results are row by row.
 pub fn made<T: Send>(of: impl Fn([f32; 2]) -> T + Sync) -> Vec<T> {
     let middle = |index: usize| (index as f32 + 0.5) / EDGE as f32;
-    (0..EDGE * EDGE).into_par_iter().map(|at| of([middle(at % EDGE), middle(at / EDGE)])).collect()
+    parallel::map_range(EDGE * EDGE, |at| of([middle(at % EDGE), middle(at / EDGE)]))
 }
 
 /// Box blur: every texel becomes the mean of a square with 2 · `radius` + 1 texels along an edge. Edges wrap around.

@@ -60,6 +60,11 @@ impl Noise {
         Self { periods, gain, octaves: (0..count).map(octave).collect() }
     }
 
+    /// Draws the gradients of one octave.
+    pub fn octave(key: u32, periods: [u32; 2]) -> Self {
+        Self::new(key, periods, 1, 1.0)
+    }
+
     /// The noise at texture coordinates, about −1 to 1.
     pub fn at(&self, at: [f32; 2]) -> f32 {
         self.mean(at, |weight, noise| weight * noise)

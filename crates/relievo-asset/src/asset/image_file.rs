@@ -5,7 +5,11 @@ use std::ops::Deref;
 use std::path::Path;
 use std::sync::{Arc, LazyLock, OnceLock};
 
-use image::{DynamicImage, ImageError, ImageFormat, ImageReader, ImageResult, Limits, RgbaImage};
+use image::codecs::png::PngEncoder;
+use image::{
+    DynamicImage, ExtendedColorType, ImageEncoder as _, ImageError, ImageFormat, ImageReader, ImageResult,
+    Limits, RgbaImage,
+};
 
 use crate::{Error, InputError};
 
@@ -90,6 +94,19 @@ pub fn decode_image(bytes: &[u8], limits: Limits) -> ImageResult<DynamicImage> {
 pub fn open_image(path: &Path, limits: Limits) -> Result<DynamicImage, Error> {
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
     decode_image(&bytes, limits).map_err(|error| Error::file(path, error))
+}
+
+/// Encodes an image as PNG. `texels` has the bytes of its channels, row by row, wider channels in the host's order of bytes.
+///
+/// # Errors
+/// Errors of `image`: a format of texels that PNG has not.
+///
+/// # Panics
+/// If the number of bytes is not that of the size.
+pub fn encode_png(size: [u32; 2], texels: &[u8], color: ExtendedColorType) -> ImageResult<Vec<u8>> {
+    let mut bytes = Vec::new();
+    PngEncoder::new(&mut bytes).write_image(texels, size[0], size[1], color)?;
+    Ok(bytes)
 }
 
 /// Formats of the images of models.

@@ -25,7 +25,7 @@ pub mod tangents;
 pub mod transform;
 
 pub use clip::{BoneKeys, Clip, Interpolation, Keys, Track};
-pub use image_file::{Image, decode_image, open_image};
+pub use image_file::{Image, decode_image, encode_png, open_image};
 pub use import::ENDINGS;
 pub use import::ModelFile;
 pub use influences::{Influence, Influences};

@@ -102,7 +102,7 @@ fn drawn(a: &Crowd) -> Result<DrawnOptions, InputError> {
             return Err(InputError::new(field, "given", bound));
         }
     }
-    SkeletonTier::check_all(&a.tiers).map_err(|error| error.below("options"))?;
+    SkeletonTier::check_all(&a.tiers)?;
     let usual = if a.scene { "bounded:0.5" } else { "full" };
     let [skinning, mesh] = [("skinning", &a.skinning), ("mesh", &a.mesh)]
         .map(|(field, given)| detail(field, given.as_deref().unwrap_or(usual)));

@@ -252,7 +252,7 @@ fn bad_input_is_refused_and_nothing_written() {
         (&["--mesh", "full"], &["mesh", "--image"]),
         (&["--tiers", "0.5"], &["tiers", "--image"]),
         (&["--image", "--tiers", "0.5,2"], &["tiers", "2", "between 0 and 1"]),
-        (&["--image", "--tiers", "0.25,0.5"], &["options.tiers", "0.5"]),
+        (&["--image", "--tiers", "0.25,0.5"], &["tiers[1]", "0.5"]),
         (&["--priority", "hand_left"], &["priority", "hand_left", "0 to 1"]),
         (&["--priority", "hand_left=2"], &["priority", "hand_left=2", "0 to 1"]),
         (&["--priority", "wing=1"], &["priorities.wing", "wing", "must be one of"]),

@@ -18,7 +18,7 @@ use std::str::FromStr;
 use image::{Rgba, RgbaImage};
 use relievo::InputError;
 use relievo::ops::surface::map::{HeightMap, MAP_EDGE};
-use relievo::parallel::prelude::*;
+use relievo::parallel::map_range;
 
 mod bricks;
 mod cobbles;
@@ -98,12 +98,9 @@ impl BuiltInMap {
             return Err(InputError::new("size", size, format!("must be in 1..={MAP_EDGE} texels")));
         }
         let pattern = self.pattern(size);
-        let center = |index: u32| (f64::from(index) + 0.5) / f64::from(size);
-        let row = |y: u32| {
-            let (pattern, texel) = (&pattern, &texel);
-            (0..size).into_par_iter().map(move |x| texel(pattern.at(center(x), center(y))))
-        };
-        Ok((0..size).into_par_iter().flat_map(row).collect())
+        let center = |index: usize| (index as f64 + 0.5) / f64::from(size);
+        let edge = size as usize;
+        Ok(map_range(edge * edge, |at| texel(pattern.at(center(at % edge), center(at / edge)))))
     }
 
     fn pattern(self, size: u32) -> Box<dyn Pattern> {

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::asset::Model;
 use crate::mesh::simplify::weld;
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::skinning::pose::{Moment, Pose};
 
 /// Tolerance for coincident positions, as a fraction of the pose's largest coordinate: about eight roundings of an f32.
@@ -29,8 +29,7 @@ pub(crate) fn shared(model: &Model, moments: &[Moment]) -> (Shared, Vec<Vec<usiz
     if model.meshes.len() < 2 {
         return (Shared::new(), (0..model.meshes.len()).map(|mesh| vec![mesh]).collect());
     }
-    let places: Vec<Places> =
-        (0..model.meshes.len()).into_par_iter().map(|at| Places::new(model, at, moments)).collect();
+    let places: Vec<Places> = parallel::map_range(model.meshes.len(), |at| Places::new(model, at, moments));
     let tolerances: Vec<f32> = (0..moments.len())
         .map(|pose| {
             let largest = places.iter().map(|places| places.largest(pose)).fold(0.0, f32::max);

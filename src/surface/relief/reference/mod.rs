@@ -7,7 +7,7 @@ pub mod height;
 pub mod linear;
 pub mod quadtree;
 
-use crate::parallel::prelude::*;
+use crate::parallel;
 use crate::surface::cone_map::reference::cone_map;
 use crate::surface::height_pyramid::reference::height_pyramid;
 use crate::surface::map::{Address, HeightMap};
@@ -60,6 +60,6 @@ impl<'a> ReliefSurface<'a> {
 
     /// Traces a list of rays like [`ReliefSurface::trace`], in parallel on all CPU threads.
     pub fn trace_all(&self, method: ReliefMethod, rays: &[ReliefRay], march: &March) -> Vec<ReliefHit> {
-        rays.par_iter().map(|ray| self.trace(method, ray, march)).collect()
+        parallel::map(rays, |ray| self.trace(method, ray, march))
     }
 }
